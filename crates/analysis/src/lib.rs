@@ -1,0 +1,1 @@
+//! Cross reference and the timer and counter report.

@@ -1,0 +1,1 @@
+//! Between project files, the program model, SLC text, JSON and CSV.

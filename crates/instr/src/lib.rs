@@ -1,0 +1,1 @@
+//! The SLC 500 and MicroLogix instruction set, one place per instruction.

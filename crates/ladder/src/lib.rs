@@ -1,0 +1,1 @@
+//! The ladder program model: project, program files, rungs, addresses, data files, documentation.

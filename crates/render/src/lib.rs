@@ -1,0 +1,1 @@
+//! Rungs drawn as terminal text.

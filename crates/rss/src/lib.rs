@@ -1,0 +1,1 @@
+//! RSLogix 500 project files: container, streams, archive objects, typed records.

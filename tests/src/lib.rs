@@ -1,0 +1,1 @@
+//! Witnesses and helpers shared by the tests over whole projects.

@@ -1,0 +1,2 @@
+//! Chores: what a developer and CI run.
+fn main() {}
