@@ -62,6 +62,7 @@ pub struct Checkpoint {
     notes: usize,
     more: usize,
     strings: usize,
+    opaque: usize,
 }
 
 /// Cursor over one payload.
@@ -73,6 +74,9 @@ pub struct Reader<'a> {
     bytes: &'a [u8],
     pos: usize,
     complete: usize,
+    /// Bytes taken by [`Reader::opaque`] so far, and how many of them lie before `complete`.
+    opaque: usize,
+    complete_opaque: usize,
     stream: Box<str>,
     mode: Mode,
     map: Vec<Entry>,
@@ -91,6 +95,8 @@ impl<'a> Reader<'a> {
             bytes,
             pos: 0,
             complete: 0,
+            opaque: 0,
+            complete_opaque: 0,
             stream: stream.into(),
             mode,
             // Index 0 is null; numbers are assigned from 1.
@@ -167,6 +173,7 @@ impl<'a> Reader<'a> {
     #[inline]
     pub fn mark(&mut self) {
         self.complete = self.pos;
+        self.complete_opaque = self.opaque;
     }
 
     // ---- errors --------------------------------------------------------
@@ -296,7 +303,7 @@ impl<'a> Reader<'a> {
             );
             self.notes.push(last);
         }
-        (self.complete, self.notes)
+        (self.complete - self.complete_opaque, self.notes)
     }
 
     /// Requires the payload to end here.
@@ -323,6 +330,7 @@ impl<'a> Reader<'a> {
             notes: self.notes.len(),
             more: self.more,
             strings: self.strings,
+            opaque: self.opaque,
         }
     }
 
@@ -335,6 +343,7 @@ impl<'a> Reader<'a> {
         self.notes.truncate(to.notes);
         self.more = to.more;
         self.strings = to.strings;
+        self.opaque = to.opaque;
     }
 
     // ---- plain fields --------------------------------------------------
@@ -353,6 +362,17 @@ impl<'a> Reader<'a> {
             }
             None => Err(self.short(what, n)),
         }
+    }
+
+    /// `n` bytes that are carried without knowing what they mean. They do not
+    /// count as understood.
+    ///
+    /// # Errors
+    /// If fewer are left.
+    pub fn opaque(&mut self, what: &'static str, n: usize) -> Result<&'a [u8]> {
+        let bytes = self.bytes(what, n)?;
+        self.opaque += n;
+        Ok(bytes)
     }
 
     /// `N` bytes as an array.

@@ -207,3 +207,25 @@ fn trailing_bytes_are_a_deviation() {
     assert_eq!((parsed.understood, parsed.error.is_some()), (2, true));
     assert_eq!(serialize(&parsed.value), Ok(b"\x01x".to_vec()));
 }
+
+#[test]
+fn carried_bytes_are_not_understood() {
+    #[derive(Default)]
+    struct Tail<'a>(Text<'a>, &'a [u8]);
+    impl<'a> Record<'a> for Tail<'a> {
+        fn read(&mut self, r: &mut Reader<'a>) -> Result<()> {
+            self.0 = r.string("text")?;
+            self.1 = r.opaque("the rest", r.remaining())?;
+            Ok(())
+        }
+        fn write(&self, w: &mut Writer) -> Result<()> {
+            w.string(&self.0)?;
+            w.bytes(self.1);
+            Ok(())
+        }
+    }
+    let bytes = b"\x01xyyy";
+    let parsed = parse::<Tail>(bytes, "S", Mode::Strict);
+    assert_eq!((parsed.understood, parsed.error.is_none()), (2, true));
+    assert_eq!(serialize(&parsed.value), Ok(bytes.to_vec()));
+}
