@@ -1,2 +1,196 @@
-//! Chores: what a developer and CI run.
-fn main() {}
+//! Chores: what a developer and CI run, by the same names.
+//!
+//! `cargo xtask` lists them. Each chore is an ordinary command line that could be typed by hand;
+//! this program only keeps the list in one place and the order right.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+type Outcome = Result<(), String>;
+
+struct Chore {
+    name: &'static str,
+    help: &'static str,
+    run: fn(&[String]) -> Outcome,
+}
+
+const CHORES: &[Chore] = &[
+    Chore {
+        name: "ci",
+        help: "everything below but `bench` and `bless`: what must pass before a change lands",
+        run: ci,
+    },
+    Chore { name: "fmt", help: "check formatting", run: |_| cargo(&["fmt", "--all", "--check"]) },
+    Chore { name: "clippy", help: "lints, warnings are errors", run: |_| clippy() },
+    Chore { name: "doc", help: "build the API documentation, broken links are errors", run: |_| doc() },
+    Chore {
+        name: "examples",
+        help: "check that examples/ is what `rungs build` makes of its text (`--write` rebuilds)",
+        run: examples,
+    },
+    Chore { name: "fuzz", help: "run every fuzz target for a few seconds (`--seconds N`)", run: fuzz },
+    Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
+    Chore {
+        name: "bless",
+        help: "rewrite generated pages and snapshots; read the difference before committing",
+        run: |_| bless(),
+    },
+    Chore {
+        name: "bench",
+        help: "benchmarks: ratios against a baseline in the same run",
+        run: |_| cargo(&["bench", "--workspace"]),
+    },
+];
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let Some(chore) = arguments.first().and_then(|name| CHORES.iter().find(|chore| chore.name == name)) else {
+        eprintln!("usage: cargo xtask CHORE\n");
+        for chore in CHORES {
+            eprintln!("  {:<10} {}", chore.name, chore.help);
+        }
+        return ExitCode::from(2);
+    };
+    match (chore.run)(&arguments[1..]) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("xtask {}: {why}", chore.name);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Cheap checks first; the tests last, so that the runner's own result lines close the output.
+fn ci(_: &[String]) -> Outcome {
+    for name in ["fmt", "clippy", "doc", "examples", "fuzz", "test"] {
+        let start = Instant::now();
+        println!("==> {name}");
+        let chore = CHORES.iter().find(|chore| chore.name == name).ok_or("no such chore")?;
+        (chore.run)(&[]).map_err(|why| format!("{name}: {why}"))?;
+        println!("==> {name} passed in {} s", start.elapsed().as_secs());
+    }
+    Ok(())
+}
+
+fn clippy() -> Outcome {
+    cargo(&["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"])
+}
+
+fn doc() -> Outcome {
+    let mut command = cargo_command(&["doc", "--workspace", "--no-deps", "--document-private-items", "--quiet"]);
+    run(command.env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+fn test() -> Outcome {
+    cargo(&["test", "--workspace", "--no-fail-fast"])
+}
+
+fn bless() -> Outcome {
+    let mut command = cargo_command(&["test", "--workspace", "--no-fail-fast", "--quiet"]);
+    run(command.env("RUNGS_BLESS", "1").env("INSTA_UPDATE", "always"))?;
+    examples(&["--write".to_owned()])
+}
+
+/// Builds every `examples/*/*.SLC` and compares with the project kept beside it.
+fn examples(arguments: &[String]) -> Outcome {
+    cargo(&["build", "--release", "--quiet", "--package", "cli"])?;
+    let rungs = target_directory().join("release").join(format!("rungs{}", std::env::consts::EXE_SUFFIX));
+    let write = arguments.iter().any(|argument| argument == "--write");
+    for text in example_texts()? {
+        let project = text.with_extension("RSS");
+        let built = if write { project.clone() } else { target_directory().join("example.RSS") };
+        run(Command::new(&rungs).arg("build").arg(&text).arg("-o").arg(&built).arg("--force"))?;
+        let same = std::fs::read(&built).ok() == std::fs::read(&project).ok();
+        if !same {
+            return Err(format!(
+                "{} is not what its text builds: run `cargo xtask examples --write`",
+                project.display()
+            ));
+        }
+        run(Command::new(&rungs).arg("verify").arg(&project))?;
+    }
+    Ok(())
+}
+
+fn example_texts() -> Result<Vec<PathBuf>, String> {
+    let mut found = Vec::new();
+    for folder in list(&root().join("examples"))? {
+        if folder.is_dir() {
+            found.extend(list(&folder)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "SLC")));
+        }
+    }
+    if found.is_empty() { Err("no example texts found".to_owned()) } else { Ok(found) }
+}
+
+/// A short run of every fuzz target: enough to catch what a change breaks at once. cargo-fuzz is
+/// installed if it is not there. Coverage instrumentation needs unstable flags only for sanitizers,
+/// which stay off: the crates hold no `unsafe` for them to watch.
+fn fuzz(arguments: &[String]) -> Outcome {
+    let seconds = match arguments {
+        [flag, seconds] if flag == "--seconds" => seconds.clone(),
+        [] => "10".to_owned(),
+        _ => return Err("expected nothing or `--seconds N`".to_owned()),
+    };
+    let have = cargo_command(&["fuzz", "--version"]).output().is_ok_and(|output| output.status.success());
+    if !have {
+        cargo(&["install", "cargo-fuzz", "--locked", "--quiet"])?;
+    }
+    let mut targets: Vec<String> = list(&root().join("fuzz/fuzz_targets"))?
+        .into_iter()
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    targets.sort();
+    for target in targets {
+        println!("fuzz {target} for {seconds} s");
+        let limit = format!("-max_total_time={seconds}");
+        let mut command = cargo_command(&[
+            "fuzz",
+            "run",
+            "--sanitizer",
+            "none",
+            "--release",
+            &target,
+            "--",
+            &limit,
+            "-rss_limit_mb=512",
+            "-malloc_limit_mb=256",
+            "-timeout=5",
+            "-max_len=65536",
+            "-verbosity=0",
+            "-print_final_stats=0",
+        ]);
+        run(command.env("RUSTC_BOOTSTRAP", "1"))?;
+    }
+    Ok(())
+}
+
+fn list(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    Ok(paths)
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
+}
+
+fn target_directory() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
+fn cargo(arguments: &[&str]) -> Outcome {
+    run(&mut cargo_command(arguments))
+}
+
+fn cargo_command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root()).args(arguments);
+    command
+}
+
+fn run(command: &mut Command) -> Outcome {
+    let status = command.status().map_err(|error| format!("{command:?}: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{command:?} ended with {status}")) }
+}

@@ -32,7 +32,7 @@ pub enum Family {
 }
 
 const FAMILIES: &[(Family, &str, &str)] = &[
-    (Family::SlcFixed, "slc-fixed", "SLC 500 fixed"),
+    (Family::SlcFixed, "slc-500-fixed", "SLC 500 fixed"),
     (Family::Slc501, "slc-5/01", "SLC 5/01"),
     (Family::Slc502, "slc-5/02", "SLC 5/02"),
     (Family::Slc503, "slc-5/03", "SLC 5/03"),
