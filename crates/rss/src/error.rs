@@ -81,8 +81,6 @@ pub enum Foreign {
     CompoundOther,
     /// A compound file whose streams are those of an RSLogix 5 (PLC-5) project.
     Rsp,
-    /// An archive of the DOS-era ladder editors (PLC-5 or SLC 500 `.ACH`).
-    Ach,
     /// A Studio 5000 / RSLogix 5000 project database.
     Acd,
     /// A Studio 5000 / RSLogix 5000 export in XML.
@@ -97,21 +95,26 @@ pub enum Foreign {
     Text,
     /// Only zero bytes.
     Zeros,
-    /// None of these.
-    Unknown,
+    /// None of these; its first bytes. The archives of the DOS-era editors
+    /// (`.ACH`) land here: no mark is known by which to tell their content.
+    Unknown {
+        /// Up to eight bytes from the start, zeros if there are fewer.
+        start: [u8; 8],
+    },
 }
 
 impl fmt::Display for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        let text = match self {
             Foreign::Empty => "an empty file",
             Foreign::Pdf => "a PDF document",
             Foreign::Zip => "a zip archive",
             Foreign::OtherArchive => "a compressed archive",
-            Foreign::CompoundWithoutStreams => "a compound file without RSLogix streams (it holds no stream at all: a save cut short?)",
+            Foreign::CompoundWithoutStreams => {
+                "a compound file without RSLogix streams (it holds no stream at all: a save cut short?)"
+            }
             Foreign::CompoundOther => "a compound file without RSLogix streams",
             Foreign::Rsp => "an RSLogix 5 (PLC-5) project, not an RSLogix 500 one",
-            Foreign::Ach => "a PLC archive of the DOS editors (.ACH)",
             Foreign::Acd => "a Logix 5000 project database (.ACD)",
             Foreign::L5x => "a Logix 5000 export in XML (.L5X)",
             Foreign::L5k => "a Logix 5000 export as text (.L5K)",
@@ -119,8 +122,16 @@ impl fmt::Display for Foreign {
             Foreign::Xml => "an XML document",
             Foreign::Text => "a text file",
             Foreign::Zeros => "a file of zero bytes only",
-            Foreign::Unknown => "a file of an unknown kind (no compound file)",
-        })
+            Foreign::Unknown { start } => {
+                let [a, b, c, d, ..] = start;
+                return write!(
+                    f,
+                    "no compound file and of no kind known here (it starts with {a:02x} {b:02x} {c:02x} {d:02x}; \
+                     an .ACH archive of the DOS editors would look like this too)"
+                );
+            }
+        };
+        f.write_str(text)
     }
 }
 

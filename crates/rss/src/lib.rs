@@ -2,11 +2,25 @@
 //!
 //! The crate reads every byte of an `.RSS` file and writes it back. It knows
 //! bytes and records; what an instruction does, it does not know.
+//!
+//! From the outside in: [`container`] is the compound file, [`stream`] names
+//! what is in it, [`envelope`] opens a stream's payload, [`archive`] reads and
+//! writes the objects of a payload, and one module per stream describes its
+//! records. [`Project`] holds a file together.
 
 pub mod archive;
+pub mod container;
+pub mod envelope;
 pub mod error;
+pub mod identify;
+pub mod project;
+pub mod stream;
 pub mod text;
 
 pub use archive::{Parsed, Record, parse, serialize};
+pub use container::Container;
 pub use error::{Deviation, Error, Foreign, Mode, Result, Space};
+pub use identify::identify;
+pub use project::{Project, Stream};
+pub use stream::{ImageKind, StreamKind};
 pub use text::Text;
