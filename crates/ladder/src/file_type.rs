@@ -31,7 +31,9 @@ pub enum FileType {
     RIX,
     HSC,
     PTO,
+    PTOX,
     PWM,
+    PWMX,
     STI,
     EII,
     RTC,
@@ -78,7 +80,9 @@ const TABLE: &[(FileType, &str, u16, &str)] = &[
     (RIX, "RIX", 25, "routing information"),
     (HSC, "HSC", 0, "high-speed counter"),
     (PTO, "PTO", 0, "pulse train output"),
+    (PTOX, "PTOX", 0, "pulse train output (MicroLogix 1400)"),
     (PWM, "PWM", 0, "pulse width modulation"),
+    (PWMX, "PWMX", 0, "pulse width modulation (MicroLogix 1400)"),
     (STI, "STI", 0, "selectable timed interrupt"),
     (EII, "EII", 0, "event input interrupt"),
     (RTC, "RTC", 0, "real-time clock"),
@@ -122,7 +126,10 @@ impl FileType {
     /// Function files belong to the controller (HSC, RTC, ...); they are not data table files and
     /// an address leaves their number out when it is 0.
     pub fn is_function_file(self) -> bool {
-        matches!(self, HSC | PTO | PWM | STI | EII | RTC | MMI | BHI | TPI | CS | DLS | DAT | LCD | IOS | ES)
+        matches!(
+            self,
+            HSC | PTO | PTOX | PWM | PWMX | STI | EII | RTC | MMI | BHI | TPI | CS | DLS | DAT | LCD | IOS | ES
+        )
     }
 
     /// The file number an address of this type has when none is written: O, I and S are always
