@@ -137,12 +137,7 @@ pub fn parse<'a, R: Record<'a>>(payload: &'a [u8], stream: &str, mode: Mode) -> 
         r.expect_end()
     });
     let (understood, deviations) = r.into_findings();
-    Parsed {
-        value,
-        understood,
-        error: result.err(),
-        deviations,
-    }
+    Parsed { value, understood, error: result.err(), deviations }
 }
 
 /// The payload of a record.

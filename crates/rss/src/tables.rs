@@ -202,7 +202,7 @@ pub fn reported_type(code: u16) -> Option<&'static str> {
 }
 
 /// CIP identity of an expansion module of the packed I/O form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct ModuleIdentity {
     /// CIP vendor number; 1 is Allen-Bradley.
     pub vendor: u16,
@@ -538,7 +538,7 @@ pub fn serial_driver(code: u16) -> Option<(&'static str, Evidence)> {
 
 /// Base-unit variant: the four hexadecimal digits of a word of the packed
 /// I/O configuration (evidence: inferred).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct BaseUnit(pub u16);
 
 impl BaseUnit {

@@ -8,10 +8,10 @@ use std::fmt;
 /// same number, as Windows itself maps them, so that every byte has a
 /// character of its own and decoding can be undone.
 const HIGH: [char; 32] = [
-    '\u{20AC}', '\u{81}', '\u{201A}', '\u{192}', '\u{201E}', '\u{2026}', '\u{2020}', '\u{2021}',
-    '\u{2C6}', '\u{2030}', '\u{160}', '\u{2039}', '\u{152}', '\u{8D}', '\u{17D}', '\u{8F}',
-    '\u{90}', '\u{2018}', '\u{2019}', '\u{201C}', '\u{201D}', '\u{2022}', '\u{2013}', '\u{2014}',
-    '\u{2DC}', '\u{2122}', '\u{161}', '\u{203A}', '\u{153}', '\u{9D}', '\u{17E}', '\u{178}',
+    '\u{20AC}', '\u{81}', '\u{201A}', '\u{192}', '\u{201E}', '\u{2026}', '\u{2020}', '\u{2021}', '\u{2C6}', '\u{2030}',
+    '\u{160}', '\u{2039}', '\u{152}', '\u{8D}', '\u{17D}', '\u{8F}', '\u{90}', '\u{2018}', '\u{2019}', '\u{201C}',
+    '\u{201D}', '\u{2022}', '\u{2013}', '\u{2014}', '\u{2DC}', '\u{2122}', '\u{161}', '\u{203A}', '\u{153}', '\u{9D}',
+    '\u{17E}', '\u{178}',
 ];
 
 /// The character of one byte in code page 1252; every byte has one.
@@ -28,10 +28,7 @@ pub fn decode_byte(byte: u8) -> char {
 pub fn encode_char(c: char) -> Option<u8> {
     match u32::from(c) {
         low @ (0..=0x7F | 0xA0..=0xFF) => u8::try_from(low).ok(),
-        _ => HIGH
-            .iter()
-            .position(|&h| h == c)
-            .and_then(|i| u8::try_from(0x80 + i).ok()),
+        _ => HIGH.iter().position(|&h| h == c).and_then(|i| u8::try_from(0x80 + i).ok()),
     }
 }
 
@@ -79,21 +76,13 @@ impl<'a> Text<'a> {
     /// Text of 8-bit bytes, its length written in the shortest form.
     #[must_use]
     pub const fn from_bytes(bytes: &'a [u8]) -> Self {
-        Text {
-            bytes: Cow::Borrowed(bytes),
-            wide: false,
-            form: LengthForm::Shortest,
-        }
+        Text { bytes: Cow::Borrowed(bytes), wide: false, form: LengthForm::Shortest }
     }
 
     /// Text as read: bytes, width and the form of the length.
     #[must_use]
     pub(crate) const fn from_parts(bytes: &'a [u8], wide: bool, form: LengthForm) -> Self {
-        Text {
-            bytes: Cow::Borrowed(bytes),
-            wide,
-            form,
-        }
+        Text { bytes: Cow::Borrowed(bytes), wide, form }
     }
 
     /// Encodes a Rust string to code page 1252.
@@ -104,11 +93,7 @@ impl<'a> Text<'a> {
         if text.is_ascii() {
             return Ok(Text::from_bytes(text.as_bytes()));
         }
-        Ok(Text {
-            bytes: Cow::Owned(encode(text)?),
-            wide: false,
-            form: LengthForm::Shortest,
-        })
+        Ok(Text { bytes: Cow::Owned(encode(text)?), wide: false, form: LengthForm::Shortest })
     }
 
     /// The stored bytes: one per character, or two (UTF-16, low byte first) if [`Text::is_wide`].
@@ -147,25 +132,14 @@ impl<'a> Text<'a> {
         if !self.wide {
             return decode(&self.bytes);
         }
-        let units = self
-            .bytes
-            .chunks_exact(2)
-            .map(|p| u16::from_le_bytes([p[0], p[1]]));
-        Cow::Owned(
-            char::decode_utf16(units)
-                .map(|r| r.unwrap_or(char::REPLACEMENT_CHARACTER))
-                .collect(),
-        )
+        let units = self.bytes.chunks_exact(2).map(|p| u16::from_le_bytes([p[0], p[1]]));
+        Cow::Owned(char::decode_utf16(units).map(|r| r.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
     }
 
     /// The same text, owning its bytes.
     #[must_use]
     pub fn into_owned(self) -> Text<'static> {
-        Text {
-            bytes: Cow::Owned(self.bytes.into_owned()),
-            wide: self.wide,
-            form: self.form,
-        }
+        Text { bytes: Cow::Owned(self.bytes.into_owned()), wide: self.wide, form: self.form }
     }
 }
 
@@ -197,19 +171,13 @@ mod tests {
         let text = decode(&all);
         assert_eq!(encode(&text), Ok(all));
         // Characters as the published code page lists them.
-        assert_eq!(
-            decode(&[0x80, 0xB0, 0xF7, 0x9C]),
-            "\u{20AC}\u{B0}\u{F7}\u{153}"
-        );
+        assert_eq!(decode(&[0x80, 0xB0, 0xF7, 0x9C]), "\u{20AC}\u{B0}\u{F7}\u{153}");
     }
 
     #[test]
     fn a_character_outside_the_code_page_is_named() {
         assert_eq!(Text::new("20 \u{2103}"), Err('\u{2103}'));
-        assert_eq!(
-            Text::new("20 \u{B0}C").map(|t| t.as_bytes().to_vec()),
-            Ok(b"20 \xB0C".to_vec())
-        );
+        assert_eq!(Text::new("20 \u{B0}C").map(|t| t.as_bytes().to_vec()), Ok(b"20 \xB0C".to_vec()));
     }
 
     #[test]

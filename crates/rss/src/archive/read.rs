@@ -1,8 +1,6 @@
 //! The archive reader: a bounds-checked cursor with the class and object map and the path for messages.
 
-use super::{
-    BIG, BIG_CLASS, CLASS, MAX_DEPTH, MAX_NOTES, MAX_OBJECTS, MAX_STRINGS, NEW_CLASS, NULL, SCHEMA,
-};
+use super::{BIG, BIG_CLASS, CLASS, MAX_DEPTH, MAX_NOTES, MAX_OBJECTS, MAX_STRINGS, NEW_CLASS, NULL, SCHEMA};
 use crate::error::{Deviation, Error, Mode, Result, Space};
 use crate::text::{LengthForm, Text};
 use std::fmt::Write as _;
@@ -143,10 +141,9 @@ impl<'a> Reader<'a> {
     #[inline]
     pub fn enter(&mut self, name: &'static str, number: usize) -> Result<()> {
         if self.path.len() >= MAX_DEPTH {
-            return Err(self.fault(
-                format_args!("records nested at most {MAX_DEPTH} deep"),
-                format_args!("one more {name}"),
-            ));
+            return Err(
+                self.fault(format_args!("records nested at most {MAX_DEPTH} deep"), format_args!("one more {name}"))
+            );
         }
         let number = u32::try_from(number).unwrap_or(UNNUMBERED);
         self.path.push(Frame { name, number });
@@ -178,12 +175,7 @@ impl<'a> Reader<'a> {
 
     // ---- errors --------------------------------------------------------
 
-    fn located(
-        &self,
-        offset: usize,
-        expected: impl std::fmt::Display,
-        found: impl std::fmt::Display,
-    ) -> Deviation {
+    fn located(&self, offset: usize, expected: impl std::fmt::Display, found: impl std::fmt::Display) -> Deviation {
         let mut record = String::new();
         for (i, frame) in self.path.iter().enumerate() {
             // A pathological nest would make a message of many lines: keep both ends.
@@ -217,12 +209,7 @@ impl<'a> Reader<'a> {
 
     /// An error at a given offset, with the current path.
     #[cold]
-    pub fn fault_at(
-        &self,
-        offset: usize,
-        expected: impl std::fmt::Display,
-        found: impl std::fmt::Display,
-    ) -> Error {
+    pub fn fault_at(&self, offset: usize, expected: impl std::fmt::Display, found: impl std::fmt::Display) -> Error {
         self.located(offset, expected, found).into()
     }
 
@@ -231,11 +218,7 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// The deviation itself in [`Mode::Strict`].
     #[cold]
-    pub fn deviation(
-        &mut self,
-        expected: impl std::fmt::Display,
-        found: impl std::fmt::Display,
-    ) -> Result<()> {
+    pub fn deviation(&mut self, expected: impl std::fmt::Display, found: impl std::fmt::Display) -> Result<()> {
         self.deviation_at(self.pos, expected, found)
     }
 
@@ -268,29 +251,17 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// The deviation in [`Mode::Strict`].
     #[inline]
-    pub fn usually<T: PartialEq + std::fmt::Debug>(
-        &mut self,
-        what: &'static str,
-        value: T,
-        usual: &T,
-    ) -> Result<T> {
+    pub fn usually<T: PartialEq + std::fmt::Debug>(&mut self, what: &'static str, value: T, usual: &T) -> Result<T> {
         if value != *usual {
             let at = self.pos.saturating_sub(size_of::<T>());
-            self.deviation_at(
-                at,
-                format_args!("{what} {usual:02x?}"),
-                format_args!("{value:02x?}"),
-            )?;
+            self.deviation_at(at, format_args!("{what} {usual:02x?}"), format_args!("{value:02x?}"))?;
         }
         Ok(value)
     }
 
     #[cold]
     fn short(&self, what: &'static str, need: usize) -> Error {
-        self.fault(
-            format_args!("{what} ({need} bytes)"),
-            format_args!("{} bytes before the end", self.remaining()),
-        )
+        self.fault(format_args!("{what} ({need} bytes)"), format_args!("{} bytes before the end", self.remaining()))
     }
 
     /// How much was understood, and the deviations met.
@@ -381,11 +352,7 @@ impl<'a> Reader<'a> {
     /// If fewer are left.
     #[inline]
     pub fn array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N]> {
-        match self
-            .bytes
-            .get(self.pos..)
-            .and_then(|rest| rest.first_chunk::<N>())
-        {
+        match self.bytes.get(self.pos..).and_then(|rest| rest.first_chunk::<N>()) {
             Some(array) => {
                 self.pos += N;
                 Ok(*array)
@@ -428,13 +395,10 @@ impl<'a> Reader<'a> {
     /// If that many cannot follow.
     #[inline]
     pub fn check_room(&self, what: &'static str, n: usize, min_bytes: usize) -> Result<usize> {
-        if n.checked_mul(min_bytes)
-            .is_none_or(|need| need > self.remaining())
-        {
-            return Err(self.fault(
-                format_args!("{what} that fits the {} bytes left", self.remaining()),
-                format_args!("{n}"),
-            ));
+        if n.checked_mul(min_bytes).is_none_or(|need| need > self.remaining()) {
+            return Err(
+                self.fault(format_args!("{what} that fits the {} bytes left", self.remaining()), format_args!("{n}"))
+            );
         }
         Ok(n)
     }
@@ -451,11 +415,7 @@ impl<'a> Reader<'a> {
             0xFFFF => {
                 let n = self.u32(what)?;
                 if n < 0xFFFF {
-                    self.deviation_at(
-                        at,
-                        format_args!("{what} in its short form"),
-                        format_args!("long form of {n}"),
-                    )?;
+                    self.deviation_at(at, format_args!("{what} in its short form"), format_args!("long form of {n}"))?;
                 }
                 // 32 bits always fit: the crate supports no smaller address space.
                 usize::try_from(n).unwrap_or(usize::MAX)
@@ -522,44 +482,23 @@ impl<'a> Reader<'a> {
             0xFFFF => {
                 let n = self.u32(what)?;
                 let n = usize::try_from(n).unwrap_or(usize::MAX);
-                (
-                    n,
-                    if n < 0xFFFE {
-                        LengthForm::Long
-                    } else {
-                        LengthForm::Shortest
-                    },
-                )
+                (n, if n < 0xFFFE { LengthForm::Long } else { LengthForm::Shortest })
             }
             n => {
                 let n = usize::from(n);
-                (
-                    n,
-                    if (0xFF..0xFFFE).contains(&n) {
-                        LengthForm::Shortest
-                    } else {
-                        LengthForm::Word
-                    },
-                )
+                (n, if (0xFF..0xFFFE).contains(&n) { LengthForm::Shortest } else { LengthForm::Word })
             }
         };
         let size = if wide { 2 } else { 1 };
         self.check_room(what, units, size)?;
-        Ok(Text::from_parts(
-            self.bytes(what, units * size)?,
-            wide,
-            form,
-        ))
+        Ok(Text::from_parts(self.bytes(what, units * size)?, wide, form))
     }
 
     // ---- objects -------------------------------------------------------
 
     fn number(&mut self, entry: Entry) -> Result<u32> {
         if self.map.len() >= MAX_OBJECTS {
-            return Err(self.fault(
-                format_args!("at most {MAX_OBJECTS} classes and objects"),
-                "one more",
-            ));
+            return Err(self.fault(format_args!("at most {MAX_OBJECTS} classes and objects"), "one more"));
         }
         let number = self.map.len();
         self.map.push(entry);
@@ -584,11 +523,7 @@ impl<'a> Reader<'a> {
                 let big = self.u32("a 32-bit object tag")?;
                 let number = big & !BIG_CLASS;
                 if number < u32::from(BIG) {
-                    self.deviation_at(
-                        at,
-                        "a 16-bit tag for a small number",
-                        format_args!("32-bit tag {big:#010x}"),
-                    )?;
+                    self.deviation_at(at, "a 16-bit tag for a small number", format_args!("32-bit tag {big:#010x}"))?;
                 }
                 if big & BIG_CLASS != 0 {
                     self.known_class(at, number)
@@ -610,15 +545,10 @@ impl<'a> Reader<'a> {
             _ => None,
         };
         match class {
-            Some(class) => Ok(Object::New {
-                class,
-                number: self.number(Entry::Object)?,
-            }),
-            None => Err(self.fault_at(
-                at,
-                "the tag of a class introduced before",
-                format_args!("class number {number}"),
-            )),
+            Some(class) => Ok(Object::New { class, number: self.number(Entry::Object)? }),
+            None => {
+                Err(self.fault_at(at, "the tag of a class introduced before", format_args!("class number {number}")))
+            }
         }
     }
 
@@ -647,27 +577,16 @@ impl<'a> Reader<'a> {
         }
         if schema != SCHEMA {
             let name = crate::text::decode(name);
-            self.deviation_at(
-                at - 4,
-                format_args!("schema {SCHEMA} for class {name}"),
-                schema,
-            )?;
+            self.deviation_at(at - 4, format_args!("schema {SCHEMA} for class {name}"), schema)?;
         }
         if self.classes.iter().any(|c| c.name == name) {
-            self.deviation_at(
-                at,
-                "each class introduced once",
-                format_args!("{} again", crate::text::decode(name)),
-            )?;
+            self.deviation_at(at, "each class introduced once", format_args!("{} again", crate::text::decode(name)))?;
         }
         let slot = self.classes.len();
         let class = Class { name, schema, slot };
         self.number(Entry::Class(u32::try_from(slot).unwrap_or(u32::MAX)))?;
         self.classes.push(class);
-        Ok(Object::New {
-            class,
-            number: self.number(Entry::Object)?,
-        })
+        Ok(Object::New { class, number: self.number(Entry::Object)? })
     }
 
     /// An object of one class; its body follows. Returns its archive number.
@@ -685,23 +604,14 @@ impl<'a> Reader<'a> {
 
     /// The error for an object of the wrong class.
     #[cold]
-    pub fn unexpected(
-        &self,
-        at: usize,
-        expected: impl std::fmt::Display,
-        found: &Object<'_>,
-    ) -> Error {
+    pub fn unexpected(&self, at: usize, expected: impl std::fmt::Display, found: &Object<'_>) -> Error {
         let expected = format_args!("an object of class {expected}").to_string();
         match found {
             Object::Null => self.fault_at(at, expected, "a null object"),
-            Object::New { class, .. } => self.fault_at(
-                at,
-                expected,
-                format_args!("class {}", crate::text::decode(class.name)),
-            ),
-            Object::Reference { number } => {
-                self.fault_at(at, expected, format_args!("a reference to object {number}"))
+            Object::New { class, .. } => {
+                self.fault_at(at, expected, format_args!("class {}", crate::text::decode(class.name)))
             }
+            Object::Reference { number } => self.fault_at(at, expected, format_args!("a reference to object {number}")),
         }
     }
 }

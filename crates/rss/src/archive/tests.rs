@@ -21,10 +21,7 @@ fn classes_and_objects_share_one_counter() {
     assert_eq!(r.remaining(), 0);
 
     let mut w = Writer::new();
-    assert_eq!(
-        (w.object("A"), w.object("B"), w.object("A"), w.object("B")),
-        (2, 4, 5, 6)
-    );
+    assert_eq!((w.object("A"), w.object("B"), w.object("A"), w.object("B")), (2, 4, 5, 6));
     w.reference(2);
     w.null();
     assert_eq!(w.into_bytes(), bytes);
@@ -44,10 +41,7 @@ fn numbers_from_7fff_on_take_the_big_tag() {
     w.reference(late);
     w.reference(0x7FFE);
     let bytes = w.into_bytes();
-    assert_eq!(
-        &bytes[at..],
-        b"\xFF\x7F\xFF\x7F\0\x80\xFF\x7F\0\x80\0\0\xFE\x7F"
-    );
+    assert_eq!(&bytes[at..], b"\xFF\x7F\xFF\x7F\0\x80\xFF\x7F\0\x80\0\0\xFE\x7F");
 
     let mut r = Reader::new(&bytes, "S", Mode::Strict);
     for n in 2..0x7FFF {
@@ -68,9 +62,7 @@ fn tags_out_of_range_are_located() {
         (b"\xFF\xFF\x80\0\x02\0A!", "\"A!\""),
     ] {
         let error = reader(bytes).object().expect_err("must fail");
-        let Error::Record(d) = error else {
-            panic!("{error:?}")
-        };
+        let Error::Record(d) = error else { panic!("{error:?}") };
         assert_eq!(d.found, found);
     }
     // A class number is no object number, and the other way round.
@@ -91,23 +83,11 @@ fn strings_keep_the_form_of_their_length() {
         (b"\xFF\xFF\xFF\x02\0\0\0T4".to_vec(), LengthForm::Long),
         (b"\xFF\xFE\xFF\x02T\x004\0".to_vec(), LengthForm::Shortest),
         (b"\xFF\xFE\xFF\xFF\x02\0T\x004\0".to_vec(), LengthForm::Word),
-        (
-            b"\xFF\xFE\xFF\xFF\xFF\xFF\x02\0\0\0T\x004\0".to_vec(),
-            LengthForm::Long,
-        ),
+        (b"\xFF\xFE\xFF\xFF\xFF\xFF\x02\0\0\0T\x004\0".to_vec(), LengthForm::Long),
     ];
-    cases.push((
-        [b"\xFF\xFF\0".as_slice(), &long[..0xFF]].concat(),
-        LengthForm::Shortest,
-    ));
-    cases.push((
-        [b"\xFF\xFF\xFF\xFE\xFF\0\0".as_slice(), &long[..0xFFFE]].concat(),
-        LengthForm::Shortest,
-    ));
-    cases.push((
-        [b"\xFF\xFE\xFF\xFF\xFE\xFF".as_slice(), &[0; 0x1_FFFC]].concat(),
-        LengthForm::Word,
-    ));
+    cases.push(([b"\xFF\xFF\0".as_slice(), &long[..0xFF]].concat(), LengthForm::Shortest));
+    cases.push(([b"\xFF\xFF\xFF\xFE\xFF\0\0".as_slice(), &long[..0xFFFE]].concat(), LengthForm::Shortest));
+    cases.push(([b"\xFF\xFE\xFF\xFF\xFE\xFF".as_slice(), &[0; 0x1_FFFC]].concat(), LengthForm::Word));
     for (bytes, form) in cases {
         let mut r = reader(&bytes);
         let text = r.string("text").expect("reads");
@@ -131,22 +111,10 @@ fn counts_and_lengths_are_checked_before_anything_is_allocated() {
         error.to_string(),
         "S, inflated offset 0x2: expected a number of items that fits the 3 bytes left, found 4"
     );
-    assert!(
-        reader(b"\xFF\xFF\xFF\xFF\xFF\xFF\xFFxyz")
-            .string("text")
-            .is_err()
-    );
-    assert!(
-        reader(b"\xFF\xFE\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFFxyz")
-            .string("text")
-            .is_err()
-    );
+    assert!(reader(b"\xFF\xFF\xFF\xFF\xFF\xFF\xFFxyz").string("text").is_err());
+    assert!(reader(b"\xFF\xFE\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFFxyz").string("text").is_err());
     assert_eq!(reader(b"\xFF\xFF\x02\0\0\0ab").count("items", 1), Ok(2));
-    assert!(
-        Reader::new(b"\xFF\xFF\x02\0\0\0ab", "S", Mode::Strict)
-            .count("items", 1)
-            .is_err()
-    );
+    assert!(Reader::new(b"\xFF\xFF\x02\0\0\0ab", "S", Mode::Strict).count("items", 1).is_err());
 }
 
 #[test]
@@ -195,14 +163,7 @@ fn trailing_bytes_are_a_deviation() {
         }
     }
     let parsed = parse::<One>(b"\x01xyy", "S", Mode::Permissive);
-    assert_eq!(
-        (
-            parsed.understood,
-            parsed.error.is_none(),
-            parsed.deviations.len()
-        ),
-        (2, true, 1)
-    );
+    assert_eq!((parsed.understood, parsed.error.is_none(), parsed.deviations.len()), (2, true, 1));
     let parsed = parse::<One>(b"\x01xyy", "S", Mode::Strict);
     assert_eq!((parsed.understood, parsed.error.is_some()), (2, true));
     assert_eq!(serialize(&parsed.value), Ok(b"\x01x".to_vec()));

@@ -23,11 +23,7 @@ impl Writer {
     /// An empty archive.
     #[must_use]
     pub const fn new() -> Self {
-        Writer {
-            out: Vec::new(),
-            classes: Vec::new(),
-            next: 1,
-        }
+        Writer { out: Vec::new(), classes: Vec::new(), next: 1 }
     }
 
     /// The payload written.
@@ -88,9 +84,8 @@ impl Writer {
     /// # Errors
     /// If `n` does not fit.
     pub fn count_u16(&mut self, n: usize) -> Result<()> {
-        let n = u16::try_from(n).map_err(|_| {
-            Error::Unwritable(format!("{n} items where at most 65535 can be counted"))
-        })?;
+        let n =
+            u16::try_from(n).map_err(|_| Error::Unwritable(format!("{n} items where at most 65535 can be counted")))?;
         self.u16(n);
         Ok(())
     }
@@ -100,8 +95,7 @@ impl Writer {
     /// # Errors
     /// If `n` does not fit.
     pub fn count_u32(&mut self, n: usize) -> Result<()> {
-        let n = u32::try_from(n)
-            .map_err(|_| Error::Unwritable(format!("{n} items where 32 bits count them")))?;
+        let n = u32::try_from(n).map_err(|_| Error::Unwritable(format!("{n} items where 32 bits count them")))?;
         self.u32(n);
         Ok(())
     }
@@ -111,11 +105,7 @@ impl Writer {
     /// # Errors
     /// If the form cannot hold the length.
     pub fn string(&mut self, text: &Text<'_>) -> Result<()> {
-        let units = if text.is_wide() {
-            text.len() / 2
-        } else {
-            text.len()
-        };
+        let units = if text.is_wide() { text.len() / 2 } else { text.len() };
         if text.is_wide() {
             self.bytes(&[0xFF, 0xFE, 0xFF]);
         }
