@@ -1,0 +1,1 @@
+//! The instruction reference page, written from the table.
