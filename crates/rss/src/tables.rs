@@ -234,32 +234,12 @@ const fn module(
     evidence: Evidence,
     basis: &'static str,
 ) -> (ModuleIdentity, ModuleName) {
-    (
-        ModuleIdentity {
-            vendor,
-            device_type,
-            code,
-        },
-        ModuleName {
-            catalog,
-            description,
-            evidence,
-            basis,
-        },
-    )
+    (ModuleIdentity { vendor, device_type, code }, ModuleName { catalog, description, evidence, basis })
 }
 
 /// Expansion modules of the packed I/O form.
 pub const EXPANSION_MODULES: &[(ModuleIdentity, ModuleName)] = &[
-    module(
-        1,
-        7,
-        96,
-        "1762-IQ8",
-        "8-Input 10/30 VDC",
-        Evidence::Printed,
-        "named in reports of the same project",
-    ),
+    module(1, 7, 96, "1762-IQ8", "8-Input 10/30 VDC", Evidence::Printed, "named in reports of the same project"),
     module(
         1,
         7,
@@ -305,24 +285,8 @@ pub const EXPANSION_MODULES: &[(ModuleIdentity, ModuleName)] = &[
         Evidence::Weak,
         "8 discrete outputs that are not the relay module; OB8 is possible",
     ),
-    module(
-        1,
-        7,
-        120,
-        "1762-OW8",
-        "8-Output Relay",
-        Evidence::Printed,
-        "named in reports of the same project",
-    ),
-    module(
-        1,
-        7,
-        121,
-        "1762-OW16",
-        "16-Output Relay",
-        Evidence::Inferred,
-        "code after OW8, 16 outputs",
-    ),
+    module(1, 7, 120, "1762-OW8", "8-Output Relay", Evidence::Printed, "named in reports of the same project"),
+    module(1, 7, 121, "1762-OW16", "16-Output Relay", Evidence::Inferred, "code after OW8, 16 outputs"),
     module(
         1,
         7,
@@ -381,10 +345,7 @@ pub const EXPANSION_MODULES: &[(ModuleIdentity, ModuleName)] = &[
 
 /// The expansion module with this CIP identity, if it is known.
 pub fn expansion_module(identity: ModuleIdentity) -> Option<&'static ModuleName> {
-    EXPANSION_MODULES
-        .iter()
-        .find(|(known, _)| *known == identity)
-        .map(|(_, name)| name)
+    EXPANSION_MODULES.iter().find(|(known, _)| *known == identity).map(|(_, name)| name)
 }
 
 const fn slc(
@@ -394,15 +355,7 @@ const fn slc(
     evidence: Evidence,
     basis: &'static str,
 ) -> (u16, ModuleName) {
-    (
-        id,
-        ModuleName {
-            catalog,
-            description,
-            evidence,
-            basis,
-        },
-    )
+    (id, ModuleName { catalog, description, evidence, basis })
 }
 
 /// Modules of the SLC slot form by ID code (100 × class + number).
@@ -444,41 +397,11 @@ pub const SLC_MODULES: &[(u16, ModuleName)] = &[
         Evidence::Proven,
         "slot 0 of every project of models 28 and 36",
     ),
-    slc(
-        3504,
-        "1746-NI16I",
-        "16-Channel Analog Current Input, class 1",
-        Evidence::Published,
-        "publication 1746-UM001A",
-    ),
-    slc(
-        3505,
-        "1746-NI16V",
-        "16-Channel Analog Voltage Input, class 1",
-        Evidence::Published,
-        "publication 1746-UM001A",
-    ),
-    slc(
-        3527,
-        "1746-NO8I",
-        "8-Channel Analog Current Output, class 1",
-        Evidence::Published,
-        "publication 1746-UM026A",
-    ),
-    slc(
-        3528,
-        "1746-NO8V",
-        "8-Channel Analog Voltage Output, class 1",
-        Evidence::Published,
-        "publication 1746-UM026A",
-    ),
-    slc(
-        3533,
-        "1746-NT8",
-        "8-Channel Thermocouple/mV Input",
-        Evidence::Published,
-        "publication 1746-UM022B",
-    ),
+    slc(3504, "1746-NI16I", "16-Channel Analog Current Input, class 1", Evidence::Published, "publication 1746-UM001A"),
+    slc(3505, "1746-NI16V", "16-Channel Analog Voltage Input, class 1", Evidence::Published, "publication 1746-UM001A"),
+    slc(3527, "1746-NO8I", "8-Channel Analog Current Output, class 1", Evidence::Published, "publication 1746-UM026A"),
+    slc(3528, "1746-NO8V", "8-Channel Analog Voltage Output, class 1", Evidence::Published, "publication 1746-UM026A"),
+    slc(3533, "1746-NT8", "8-Channel Thermocouple/mV Input", Evidence::Published, "publication 1746-UM022B"),
     slc(
         10403,
         "1746-NI16I",
@@ -493,28 +416,13 @@ pub const SLC_MODULES: &[(u16, ModuleName)] = &[
         Evidence::Published,
         "publication 1746-UM001A",
     ),
-    slc(
-        12727,
-        "1746-NO8I",
-        "8-Channel Analog Current Output, class 3",
-        Evidence::Published,
-        "publication 1746-UM026A",
-    ),
-    slc(
-        12728,
-        "1746-NO8V",
-        "8-Channel Analog Voltage Output, class 3",
-        Evidence::Published,
-        "publication 1746-UM026A",
-    ),
+    slc(12727, "1746-NO8I", "8-Channel Analog Current Output, class 3", Evidence::Published, "publication 1746-UM026A"),
+    slc(12728, "1746-NO8V", "8-Channel Analog Voltage Output, class 3", Evidence::Published, "publication 1746-UM026A"),
 ];
 
 /// The SLC module with this ID code (100 × class + number), if it is known.
 pub fn slc_module(id: u16) -> Option<&'static ModuleName> {
-    SLC_MODULES
-        .iter()
-        .find(|(known, _)| *known == id)
-        .map(|(_, name)| name)
+    SLC_MODULES.iter().find(|(known, _)| *known == id).map(|(_, name)| name)
 }
 
 /// Bits per second of a serial baud code, with its evidence.
@@ -582,9 +490,7 @@ impl BaseUnit {
     /// Variant letters as in the catalogue number (`BWA`, `BXBA`), or `None`
     /// where the project does not state the variant.
     pub fn letters(self) -> Option<String> {
-        let mut letters: String = [self.input()?, self.output()?, self.supply()?]
-            .into_iter()
-            .collect();
+        let mut letters: String = [self.input()?, self.output()?, self.supply()?].into_iter().collect();
         if self.analog()? {
             letters.push('A');
         }
@@ -603,11 +509,7 @@ mod tests {
         let slc: Vec<u16> = SLC_MODULES.iter().map(|(id, _)| *id).collect();
         assert!(slc.windows(2).all(|pair| pair[0] < pair[1]));
         for (index, (identity, _)) in EXPANSION_MODULES.iter().enumerate() {
-            assert!(
-                EXPANSION_MODULES[..index]
-                    .iter()
-                    .all(|(earlier, _)| earlier != identity)
-            );
+            assert!(EXPANSION_MODULES[..index].iter().all(|(earlier, _)| earlier != identity));
         }
     }
 

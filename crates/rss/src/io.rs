@@ -1,0 +1,463 @@
+//! `IO CONFIGURATION`: the base unit and the modules in its slots, in the two forms that exist.
+
+use crate::archive::{Reader, Record, Writer};
+use crate::error::Result;
+use crate::processor::Model;
+use crate::tables::{BaseUnit, IoForm, ModuleIdentity, processor_model};
+
+/// The `CIOInfo` record. Evidence per field: `docs/format/project-streams.md`.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct IoConfiguration<'a> {
+    /// Model, as in `PROCESSOR` (proven).
+    pub model: Model,
+    /// The rest, in the form of the model.
+    pub layout: IoLayout<'a>,
+}
+
+/// Form of the record after the model code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum IoLayout<'a> {
+    /// Packed module records (MicroLogix 1100, 1200, 1400).
+    Packed(PackedIo),
+    /// Fixed table of 31 slots (SLC 500 fixed, MicroLogix 1000).
+    Slots(SlotIo<'a>),
+    /// Neither; carried as bytes.
+    Opaque(&'a [u8]),
+}
+
+impl Default for IoLayout<'_> {
+    fn default() -> Self {
+        IoLayout::Opaque(&[])
+    }
+}
+
+/// Packed form (proven for models 57 and 60 to 63).
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PackedIo {
+    /// Slots in use, slot 0 included.
+    pub slot_count: u16,
+    /// 0 (unknown).
+    pub word_1: u16,
+    /// Variant of the base unit (inferred).
+    pub base_unit: BaseUnit,
+    /// 0, rarely 2 (unknown).
+    pub word_3: u16,
+    /// On-board words.
+    pub onboard: IoWords,
+    /// 0x0200, 0, 0, 0 (unknown).
+    pub words_10_to_13: [u16; 4],
+    /// 2 + 2 × slots: word offset of slot 0 in a packed table (proven).
+    pub offset: u16,
+    /// Configuration of the base unit: input filters and latches (inferred).
+    pub config: Vec<u16>,
+    /// Expansion modules in slot order.
+    pub modules: Vec<PackedModule>,
+}
+
+/// Words of one slot in the I and O files.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct IoWords {
+    /// Input bits in the last input word; 0 = all 16.
+    pub input_bits: u16,
+    /// Input words.
+    pub input_words: u16,
+    /// First word in file I.
+    pub first_input: u16,
+    /// Output bits in the last output word; 0 = all 16.
+    pub output_bits: u16,
+    /// Output words.
+    pub output_words: u16,
+    /// First word in file O.
+    pub first_output: u16,
+}
+
+/// Expansion module of the packed form.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PackedModule {
+    /// 1 (unknown).
+    pub word_0: u16,
+    /// 0 (unknown).
+    pub word_1: u16,
+    /// Word offset in a packed table (proven arithmetic).
+    pub offset: u16,
+    /// Module configuration; empty for discrete modules.
+    pub config: Vec<u16>,
+    /// Slot number, from 1.
+    pub slot: u16,
+    /// Words in the I and O files.
+    pub words: IoWords,
+    /// CIP identity; names in [`crate::tables::expansion_module`].
+    pub identity: ModuleIdentity,
+    /// Three words, perhaps revisions (unknown).
+    pub last_words: [u16; 3],
+}
+
+/// Slots that the slot form always holds.
+pub const SLOTS: usize = 31;
+/// Bytes of zeros between the slots and the rack of the slot form.
+const SLOT_REST: usize = 1282;
+/// Bytes of the slot form after the model code.
+const SLOT_FORM: usize = SLOTS * SLOT_RECORD + 2 + SLOT_REST + 4;
+const SLOT_RECORD: usize = 24;
+
+/// Slot form (proven layout for models 8, 28 and 36).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SlotIo<'a> {
+    /// Slots 0 to 30.
+    pub slots: Box<[SlotRecord; SLOTS]>,
+    /// Slots of the expansion chassis: 2 for the SLC 500 fixed, 0 for the MicroLogix 1000 (inferred).
+    pub expansion_slots: u16,
+    /// 1,282 bytes, zero in every known project (unknown).
+    pub rest: &'a [u8],
+    /// 5, 5, 5, 0: three chassis, 5 probably "none" (unknown).
+    pub rack: [u8; 4],
+}
+
+/// One slot of the slot form.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct SlotRecord {
+    /// Input bytes.
+    pub input_bytes: u8,
+    /// First word in file I.
+    pub first_input: u8,
+    /// Output bytes.
+    pub output_bytes: u8,
+    /// First word in file O.
+    pub first_output: u8,
+    /// Class of the module's ID code; `FF` with number `FF` = empty slot.
+    pub class: u8,
+    /// Number within the class; 99 = any module of the class (inferred).
+    pub number: u8,
+    /// 18 bytes, zero in every known project (unknown).
+    pub rest: [u8; 18],
+}
+
+impl SlotRecord {
+    /// The module ID code, 100 × class + number (inferred); `None` for an empty slot.
+    /// Names in [`crate::tables::slc_module`].
+    #[must_use]
+    pub fn id_code(&self) -> Option<u16> {
+        (self.class != 0xFF || self.number != 0xFF).then(|| 100 * u16::from(self.class) + u16::from(self.number))
+    }
+}
+
+/// What sits in a slot, of either form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SlotModule {
+    /// The controller's own I/O, packed form.
+    Base(BaseUnit),
+    /// A module named by its CIP identity.
+    Identity(ModuleIdentity),
+    /// A module named by its ID code.
+    IdCode(u16),
+}
+
+/// One occupied slot, of either form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Slot {
+    /// Slot number; 0 is the controller's own I/O.
+    pub slot: u16,
+    /// What sits there.
+    pub module: SlotModule,
+    /// Its words in files I and O.
+    pub words: IoWords,
+}
+
+impl IoWords {
+    /// Input points that exist.
+    #[must_use]
+    pub fn input_points(&self) -> u32 {
+        points(self.input_words, self.input_bits)
+    }
+
+    /// Output points that exist.
+    #[must_use]
+    pub fn output_points(&self) -> u32 {
+        points(self.output_words, self.output_bits)
+    }
+}
+
+fn points(words: u16, bits: u16) -> u32 {
+    match (words, bits) {
+        (0, _) => 0,
+        (words, 0) => 16 * u32::from(words),
+        (words, bits) => 16 * (u32::from(words) - 1) + u32::from(bits),
+    }
+}
+
+impl IoConfiguration<'_> {
+    /// The occupied slots in order; empty if the form is unknown.
+    #[must_use]
+    pub fn slots(&self) -> Vec<Slot> {
+        match &self.layout {
+            IoLayout::Packed(io) => {
+                let base = Slot { slot: 0, module: SlotModule::Base(io.base_unit), words: io.onboard };
+                let modules = io.modules.iter().map(|module| Slot {
+                    slot: module.slot,
+                    module: SlotModule::Identity(module.identity),
+                    words: module.words,
+                });
+                std::iter::once(base).chain(modules).collect()
+            }
+            IoLayout::Slots(io) => (0u16..)
+                .zip(io.slots.iter())
+                .filter_map(|(slot, record)| {
+                    Some(Slot { slot, module: SlotModule::IdCode(record.id_code()?), words: record.words() })
+                })
+                .collect(),
+            IoLayout::Opaque(_) => Vec::new(),
+        }
+    }
+
+    /// Input and output words of all slots: the element counts of files I and O
+    /// in every known project. `None` if the form is unknown.
+    #[must_use]
+    pub fn total_words(&self) -> Option<(u32, u32)> {
+        if matches!(self.layout, IoLayout::Opaque(_)) {
+            return None;
+        }
+        Some(self.slots().iter().fold((0, 0), |(input, output), slot| {
+            (input + u32::from(slot.words.input_words), output + u32::from(slot.words.output_words))
+        }))
+    }
+}
+
+impl SlotRecord {
+    /// The slot's words in the form of the packed layout.
+    #[must_use]
+    pub fn words(&self) -> IoWords {
+        let words = |bytes: u8| u16::from(bytes).div_ceil(2);
+        let bits = |bytes: u8| if bytes % 2 == 1 { 8 } else { 0 };
+        IoWords {
+            input_bits: bits(self.input_bytes),
+            input_words: words(self.input_bytes),
+            first_input: u16::from(self.first_input),
+            output_bits: bits(self.output_bytes),
+            output_words: words(self.output_bytes),
+            first_output: u16::from(self.first_output),
+        }
+    }
+}
+
+impl<'a> Record<'a> for IoConfiguration<'a> {
+    fn read(&mut self, r: &mut Reader<'a>) -> Result<()> {
+        r.expect_object("CIOInfo")?;
+        self.model = Model(r.u16("the processor model")?);
+        r.mark();
+        let start = r.checkpoint();
+        // An unknown model is tried in both forms. Each must use up the stream
+        // exactly, which no stream of the other form does.
+        let forms = match processor_model(self.model.0).map(|model| model.io_form) {
+            Some(IoForm::Packed) => [IoForm::Packed, IoForm::Slots],
+            Some(IoForm::Slots) | None => [IoForm::Slots, IoForm::Packed],
+        };
+        let mut first_error = None;
+        for (turn, form) in forms.into_iter().enumerate() {
+            match read_form(r, form) {
+                Ok(layout) => {
+                    self.layout = layout;
+                    if turn > 0 && processor_model(self.model.0).is_some() {
+                        r.deviation_at(0, format_args!("the I/O form of model {}", self.model.0), "the other form")?;
+                    }
+                    return self.check(r);
+                }
+                Err(error) => {
+                    first_error.get_or_insert(error);
+                    r.rewind(&start);
+                }
+            }
+        }
+        let why = first_error.map(|error| error.to_string()).unwrap_or_default();
+        r.deviation("an I/O configuration of a known form", why)?;
+        self.layout = IoLayout::Opaque(r.opaque("an I/O configuration", r.remaining())?);
+        Ok(())
+    }
+
+    fn write(&self, w: &mut Writer) -> Result<()> {
+        w.object("CIOInfo");
+        w.u16(self.model.0);
+        match &self.layout {
+            IoLayout::Packed(io) => write_packed(io, w)?,
+            IoLayout::Slots(io) => write_slots(io, w),
+            IoLayout::Opaque(bytes) => w.bytes(bytes),
+        }
+        Ok(())
+    }
+}
+
+fn read_form<'a>(r: &mut Reader<'a>, form: IoForm) -> Result<IoLayout<'a>> {
+    let layout = match form {
+        IoForm::Packed => IoLayout::Packed(read_packed(r)?),
+        IoForm::Slots => {
+            if r.remaining() != SLOT_FORM {
+                return Err(
+                    r.fault(format_args!("{SLOT_FORM} bytes of slots"), format_args!("{} bytes", r.remaining()))
+                );
+            }
+            IoLayout::Slots(read_slots(r)?)
+        }
+    };
+    match r.remaining() {
+        0 => Ok(layout),
+        n => Err(r.fault("the end of the payload", format_args!("{n} more bytes"))),
+    }
+}
+
+fn read_io_words(r: &mut Reader<'_>) -> Result<IoWords> {
+    Ok(IoWords {
+        input_bits: r.u16("input bits")?,
+        input_words: r.u16("input words")?,
+        first_input: r.u16("the first input word")?,
+        output_bits: r.u16("output bits")?,
+        output_words: r.u16("output words")?,
+        first_output: r.u16("the first output word")?,
+    })
+}
+
+fn read_words(r: &mut Reader<'_>, what: &'static str) -> Result<Vec<u16>> {
+    let count = r.count_u16(what, 2)?;
+    (0..count).map(|_| r.u16(what)).collect()
+}
+
+fn read_packed(r: &mut Reader<'_>) -> Result<PackedIo> {
+    let slot_count = r.u16("the number of slots")?;
+    let mut io = PackedIo {
+        slot_count,
+        word_1: r.u16("word 1")?,
+        base_unit: BaseUnit(r.u16("the base unit variant")?),
+        word_3: r.u16("word 3")?,
+        onboard: read_io_words(r)?,
+        words_10_to_13: [r.u16("word 10")?, r.u16("word 11")?, r.u16("word 12")?, r.u16("word 13")?],
+        offset: r.u16("the offset of slot 0")?,
+        config: read_words(r, "the base unit configuration")?,
+        modules: Vec::new(),
+    };
+    for slot in 1..slot_count {
+        r.enter("slot", usize::from(slot))?;
+        io.modules.push(PackedModule {
+            word_0: r.u16("word 0 of a module")?,
+            word_1: r.u16("word 1 of a module")?,
+            offset: r.u16("the offset of a module")?,
+            config: read_words(r, "the module configuration")?,
+            slot: r.u16("the slot number")?,
+            words: read_io_words(r)?,
+            identity: ModuleIdentity {
+                vendor: r.u16("the vendor")?,
+                device_type: r.u16("the device type")?,
+                code: r.u16("the product code")?,
+            },
+            last_words: [
+                r.u16("word 7 of a module identity")?,
+                r.u16("word 8 of a module identity")?,
+                r.u16("word 9 of a module identity")?,
+            ],
+        });
+        r.leave();
+    }
+    Ok(io)
+}
+
+fn write_io_words(words: &IoWords, w: &mut Writer) {
+    for word in [
+        words.input_bits,
+        words.input_words,
+        words.first_input,
+        words.output_bits,
+        words.output_words,
+        words.first_output,
+    ] {
+        w.u16(word);
+    }
+}
+
+fn write_words(words: &[u16], w: &mut Writer) -> Result<()> {
+    w.count_u16(words.len())?;
+    words.iter().for_each(|word| w.u16(*word));
+    Ok(())
+}
+
+fn write_packed(io: &PackedIo, w: &mut Writer) -> Result<()> {
+    for word in [io.slot_count, io.word_1, io.base_unit.0, io.word_3] {
+        w.u16(word);
+    }
+    write_io_words(&io.onboard, w);
+    io.words_10_to_13.iter().for_each(|word| w.u16(*word));
+    w.u16(io.offset);
+    write_words(&io.config, w)?;
+    for module in &io.modules {
+        w.u16(module.word_0);
+        w.u16(module.word_1);
+        w.u16(module.offset);
+        write_words(&module.config, w)?;
+        w.u16(module.slot);
+        write_io_words(&module.words, w);
+        w.u16(module.identity.vendor);
+        w.u16(module.identity.device_type);
+        w.u16(module.identity.code);
+        module.last_words.iter().for_each(|word| w.u16(*word));
+    }
+    Ok(())
+}
+
+fn read_slots<'a>(r: &mut Reader<'a>) -> Result<SlotIo<'a>> {
+    let mut slots = Box::new([SlotRecord::default(); SLOTS]);
+    for (number, slot) in slots.iter_mut().enumerate() {
+        r.enter("slot", number)?;
+        *slot = SlotRecord {
+            input_bytes: r.u8("input bytes")?,
+            first_input: r.u8("the first input word")?,
+            output_bytes: r.u8("output bytes")?,
+            first_output: r.u8("the first output word")?,
+            class: r.u8("the module class")?,
+            number: r.u8("the module number")?,
+            rest: r.array("the rest of a slot")?,
+        };
+        r.leave();
+    }
+    Ok(SlotIo {
+        slots,
+        expansion_slots: r.u16("expansion slots")?,
+        rest: r.bytes("bytes after the slots", SLOT_REST)?,
+        rack: r.array("the rack")?,
+    })
+}
+
+fn write_slots(io: &SlotIo<'_>, w: &mut Writer) {
+    for slot in io.slots.iter() {
+        w.bytes(&[slot.input_bytes, slot.first_input, slot.output_bytes, slot.first_output, slot.class, slot.number]);
+        w.bytes(&slot.rest);
+    }
+    w.u16(io.expansion_slots);
+    w.bytes(io.rest);
+    w.bytes(&io.rack);
+}
+
+/// Words of the packed table before slot 1, and of each module.
+const PACKED_BASE: u32 = 10;
+const PACKED_MODULE: u32 = 13;
+
+impl IoConfiguration<'_> {
+    /// Reports what contradicts itself; the values stand as stored.
+    fn check(&self, r: &mut Reader<'_>) -> Result<()> {
+        let IoLayout::Packed(io) = &self.layout else {
+            return Ok(());
+        };
+        let base = 2 + 2 * u32::from(io.slot_count);
+        if u32::from(io.offset) != base {
+            r.deviation_at(0, format_args!("offset {base} of slot 0"), io.offset)?;
+        }
+        for (index, module) in (1u16..).zip(&io.modules) {
+            if module.slot != index {
+                r.deviation_at(0, format_args!("slot {index}"), module.slot)?;
+            }
+            let offset = u32::from(io.offset) + PACKED_BASE + PACKED_MODULE * u32::from(index - 1);
+            if u32::from(module.offset) != offset {
+                r.deviation_at(0, format_args!("offset {offset} of slot {index}"), module.offset)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
