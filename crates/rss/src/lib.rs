@@ -9,12 +9,24 @@
 //! records. [`Project`] holds a file together.
 
 pub mod archive;
+pub mod channel;
+pub mod code;
+pub mod compiler;
 pub mod container;
+pub mod data;
+pub mod database;
 pub mod envelope;
 pub mod error;
 pub mod identify;
+pub mod io;
+pub mod monitors;
+pub mod processor;
+pub mod program;
 pub mod project;
+pub mod small;
 pub mod stream;
+pub mod summary;
+pub mod tables;
 pub mod text;
 
 pub use archive::{Parsed, Record, parse, serialize};

@@ -60,6 +60,7 @@ pub struct Checkpoint {
     notes: usize,
     more: usize,
     strings: usize,
+    loose: usize,
     opaque: usize,
 }
 
@@ -81,6 +82,8 @@ pub struct Reader<'a> {
     classes: Vec<Class<'a>>,
     path: Vec<Frame>,
     strings: usize,
+    /// Null and reference tags, which take no number but room in a caller's list.
+    loose: usize,
     notes: Vec<Deviation>,
     more: usize,
 }
@@ -102,6 +105,7 @@ impl<'a> Reader<'a> {
             classes: Vec::new(),
             path: Vec::new(),
             strings: 0,
+            loose: 0,
             notes: Vec::new(),
             more: 0,
         }
@@ -301,6 +305,7 @@ impl<'a> Reader<'a> {
             notes: self.notes.len(),
             more: self.more,
             strings: self.strings,
+            loose: self.loose,
             opaque: self.opaque,
         }
     }
@@ -314,6 +319,7 @@ impl<'a> Reader<'a> {
         self.notes.truncate(to.notes);
         self.more = to.more;
         self.strings = to.strings;
+        self.loose = to.loose;
         self.opaque = to.opaque;
     }
 
@@ -496,10 +502,22 @@ impl<'a> Reader<'a> {
 
     // ---- objects -------------------------------------------------------
 
-    fn number(&mut self, entry: Entry) -> Result<u32> {
-        if self.map.len() >= MAX_OBJECTS {
+    #[inline]
+    fn check_objects(&self) -> Result<()> {
+        if self.map.len() + self.loose >= MAX_OBJECTS {
             return Err(self.fault(format_args!("at most {MAX_OBJECTS} classes and objects"), "one more"));
         }
+        Ok(())
+    }
+
+    fn null(&mut self) -> Result<Object<'a>> {
+        self.check_objects()?;
+        self.loose += 1;
+        Ok(Object::Null)
+    }
+
+    fn number(&mut self, entry: Entry) -> Result<u32> {
+        self.check_objects()?;
         let number = self.map.len();
         self.map.push(entry);
         Ok(u32::try_from(number).unwrap_or(u32::MAX))
@@ -517,7 +535,7 @@ impl<'a> Reader<'a> {
             return self.known_class(at, u32::from(tag & !CLASS));
         }
         match tag {
-            NULL => Ok(Object::Null),
+            NULL => self.null(),
             NEW_CLASS => self.new_class(),
             BIG => {
                 let big = self.u32("a 32-bit object tag")?;
@@ -528,12 +546,32 @@ impl<'a> Reader<'a> {
                 if big & BIG_CLASS != 0 {
                     self.known_class(at, number)
                 } else if number == 0 {
-                    Ok(Object::Null)
+                    self.null()
                 } else {
                     self.known_object(at, number)
                 }
             }
             number => self.known_object(at, u32::from(number)),
+        }
+    }
+
+    /// True if what follows can only be an object of its own: the tag of a class
+    /// introduced before, or the introduction of a new one. Moves nothing.
+    ///
+    /// Serves to tell whether an optional record stands before the next object.
+    #[must_use]
+    pub fn at_object(&self) -> bool {
+        let is_class = |number: u32| {
+            let entry = usize::try_from(number).ok().and_then(|i| self.map.get(i));
+            matches!(entry, Some(Entry::Class(_)))
+        };
+        match *self.peek() {
+            [0xFF, 0xFF, a, b, length, 0, first, ..] => {
+                u16::from_le_bytes([a, b]) == SCHEMA && length > 0 && first.is_ascii_alphabetic()
+            }
+            [0xFF, 0x7F, a, b, c, d, ..] if d & 0x80 != 0 => is_class(u32::from_le_bytes([a, b, c, d & 0x7F])),
+            [low, high, ..] if high & 0x80 != 0 => is_class(u32::from(u16::from_le_bytes([low, high & 0x7F]))),
+            _ => false,
         }
     }
 
@@ -554,7 +592,11 @@ impl<'a> Reader<'a> {
 
     fn known_object(&mut self, at: usize, number: u32) -> Result<Object<'a>> {
         match usize::try_from(number).ok().and_then(|i| self.map.get(i)) {
-            Some(Entry::Object) => Ok(Object::Reference { number }),
+            Some(Entry::Object) => {
+                self.check_objects()?;
+                self.loose += 1;
+                Ok(Object::Reference { number })
+            }
             _ => Err(self.fault_at(
                 at,
                 "an object tag",
