@@ -5,4 +5,5 @@
 //! the tests.
 
 pub mod corpus;
+pub mod drawing;
 pub mod printout;
