@@ -136,6 +136,10 @@ impl std::error::Error for ExpressionError {}
 /// Parentheses and signs nest at most this deep; the editor allows far fewer.
 const MAX_DEPTH: usize = 64;
 
+/// An expression has at most this many operators: `a + a + a ..` makes a tree as deep as it is long,
+/// and the editor's limit is a few hundred characters.
+const MAX_OPERATORS: usize = 1024;
+
 impl Expression {
     /// Reads a whole text as one expression; tokens are separated by white space, parentheses need
     /// none.
@@ -158,7 +162,7 @@ impl Expression {
     /// # Errors
     /// The token where no expression can begin or go on.
     pub fn parse_prefix(tokens: &[&str]) -> Result<(Expression, usize), ExpressionError> {
-        let mut parser = Parser { tokens, at: 0 };
+        let mut parser = Parser { tokens, at: 0, operators: 0 };
         let expression = parser.binary(0, 0)?;
         Ok((expression, parser.at))
     }
@@ -205,6 +209,7 @@ fn tokens(text: &str) -> Vec<&str> {
 struct Parser<'a> {
     tokens: &'a [&'a str],
     at: usize,
+    operators: usize,
 }
 
 impl Parser<'_> {
@@ -218,6 +223,10 @@ impl Parser<'_> {
             let precedence = operator.precedence();
             if precedence < lowest.max(1) {
                 break;
+            }
+            self.operators += 1;
+            if self.operators > MAX_OPERATORS {
+                return Err(self.expected("a shorter expression"));
             }
             self.at += 1;
             let right = self.binary(precedence + 1, depth + 1)?;
@@ -304,6 +313,7 @@ mod tests {
         assert!(Expression::parse("N7:0 +").is_err());
         assert!(Expression::parse(&"( ".repeat(100_000)).is_err());
         assert!(Expression::parse(&"- ".repeat(100_000)).is_err());
+        assert!(Expression::parse(&format!("{}N7:0", "N7:0 + ".repeat(1_000_000))).is_err());
         assert!(Expression::parse("").is_err());
     }
 }
