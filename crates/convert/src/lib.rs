@@ -1,1 +1,9 @@
 //! Between project files, the program model, SLC text, JSON and CSV.
+//!
+//! [`open()`] reads a project of any form. The joints between byte records and the model are here
+//! and nowhere else: `rss` knows no instruction, `ladder` no byte.
+
+pub mod code;
+mod codes;
+pub mod from_rss;
+pub mod verify;

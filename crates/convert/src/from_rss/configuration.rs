@@ -1,0 +1,177 @@
+//! Processor, I/O, channels and memory figures: records to the model, codes to names with their evidence.
+
+use ladder::{Channel, Confidence, Family, IoConfiguration, IoRange, Memory, Module, Processor, Setting, Slot};
+use rss::io::{IoLayout, SlotModule};
+use rss::tables::{self, Evidence};
+
+fn confidence(evidence: Evidence) -> Confidence {
+    match evidence {
+        Evidence::Printed | Evidence::Proven => Confidence::Proven,
+        Evidence::Inferred => Confidence::Inferred,
+        Evidence::Weak => Confidence::Weak,
+        Evidence::Published => Confidence::Published,
+    }
+}
+
+pub(crate) fn processor(record: &rss::processor::Processor<'_>) -> Processor {
+    let code = record.model.0;
+    let model = tables::processor_model(code);
+    Processor {
+        model: Some(code),
+        catalog: model.map(|m| m.catalog.to_owned()),
+        name: model.map(|m| m.name.to_owned()),
+        family: model.and_then(|m| Family::from_id(m.family)).unwrap_or(Family::Unknown),
+        family_confidence: model.map_or(Confidence::Unknown, |m| confidence(m.family_evidence)),
+        evidence: model.map_or_else(
+            || format!("model code {code} has not been seen in a project of known make"),
+            |m| m.basis.to_owned(),
+        ),
+        project_name: record.name.decode().into_owned(),
+        main_program: record.main_program.decode().into_owned(),
+        program_id: Some(record.program_id),
+        reported_type: Some(record.reported.0),
+        driver: record.driver_settings().map(|driver| driver.name).unwrap_or_default(),
+        route: record.route.decode().into_owned(),
+        deny_future_access: None,
+        password_fields_used: Some(record.after_driver.iter().chain(record.tail).any(|byte| *byte != 0)),
+    }
+}
+
+pub(crate) fn io(record: &rss::io::IoConfiguration<'_>) -> IoConfiguration {
+    let packed = match &record.layout {
+        IoLayout::Packed(packed) => Some(packed),
+        _ => None,
+    };
+    let configuration = |slot: u16| match packed {
+        Some(packed) if slot == 0 => packed.config.clone(),
+        Some(packed) => packed.modules.iter().find(|m| m.slot == slot).map(|m| m.config.clone()).unwrap_or_default(),
+        None => Vec::new(),
+    };
+    let slots = record.slots().into_iter().map(|slot| Slot {
+        number: slot.slot,
+        module: module(&slot.module, record.model.0),
+        inputs: IoRange {
+            first_word: slot.words.first_input,
+            words: slot.words.input_words,
+            bits: points(slot.words.input_points()),
+        },
+        outputs: IoRange {
+            first_word: slot.words.first_output,
+            words: slot.words.output_words,
+            bits: points(slot.words.output_points()),
+        },
+        configuration: configuration(slot.slot),
+    });
+    IoConfiguration {
+        slots: slots.collect(),
+        base_unit: packed.and_then(|p| p.base_unit.letters()).unwrap_or_default(),
+        unknown: matches!(record.layout, IoLayout::Opaque(_)).then(|| {
+            format!(
+                "the I/O configuration of processor model {} has an unknown form; its bytes are kept",
+                record.model.0
+            )
+        }),
+    }
+}
+
+fn points(count: u32) -> u16 {
+    u16::try_from(count).unwrap_or(u16::MAX)
+}
+
+fn module(module: &SlotModule, model: u16) -> Module {
+    let named = |name: Option<&tables::ModuleName>, identity: String| match name {
+        Some(name) => Module {
+            catalog: Some(name.catalog.to_owned()),
+            description: name.description.to_owned(),
+            identity,
+            confidence: confidence(name.evidence),
+        },
+        None => Module {
+            catalog: None,
+            description: "unknown module".to_owned(),
+            identity,
+            confidence: Confidence::Unknown,
+        },
+    };
+    match module {
+        SlotModule::Base(unit) => {
+            let processor = tables::processor_model(model);
+            let variant = unit.letters().map(|letters| format!(", base unit {letters}")).unwrap_or_default();
+            Module {
+                catalog: processor.map(|p| p.catalog.to_owned()),
+                description: format!("{}{variant}", processor.map_or("controller", |p| p.name)),
+                identity: format!("base unit 0x{:04X}", unit.0),
+                confidence: processor.map_or(Confidence::Unknown, |p| confidence(p.family_evidence)),
+            }
+        }
+        SlotModule::Identity(id) => named(
+            tables::expansion_module(*id),
+            format!("vendor {}, type {}, code {}", id.vendor, id.device_type, id.code),
+        ),
+        SlotModule::IdCode(code) => named(tables::slc_module(*code), format!("ID {code}")),
+    }
+}
+
+pub(crate) fn channels(record: &rss::channel::ChannelConfiguration<'_>) -> Vec<Channel> {
+    let channels = record.channels.iter().zip(0u16..);
+    channels.map(|(channel, number)| describe_channel(channel, number)).collect()
+}
+
+fn describe_channel(channel: &rss::channel::Channel<'_>, number: u16) -> Channel {
+    use Confidence::{Inferred, Proven};
+    let mut settings = Vec::new();
+    let mut add = |name: &str, value: String, confidence: Confidence| {
+        settings.push(Setting { name: name.to_owned(), value, confidence });
+    };
+    let yes = |on: bool| if on { "Yes" } else { "No" }.to_owned();
+    let mut explained = 0;
+    if let Some(general) = channel.general() {
+        add("Edit Resource/Owner Timeout (x1 sec)", general.owner_timeout.to_string(), Proven);
+        add("Passthru Link ID (dec)", general.passthru_link_id.to_string(), Proven);
+        add("Comms Servicing Selection", yes(general.services & 1 != 0), Inferred);
+        add("Message Servicing Selection", yes(general.services & 2 != 0), Inferred);
+        explained += 4;
+    }
+    let driver = if let Some(serial) = channel.serial() {
+        let name = tables::serial_driver(serial.driver);
+        match tables::baud_rate(serial.baud) {
+            Some((rate, evidence)) => add("Baud", rate.to_string(), confidence(evidence)),
+            None => add("Baud", format!("unknown (code {})", serial.baud), Confidence::Unknown),
+        }
+        add("Source ID (decimal)", serial.source_id.to_string(), Proven);
+        add("NAK and ENQ Retries", format!("{} and {}", serial.retries[0], serial.retries[1]), Inferred);
+        add("ACK Timeout (x20 ms)", serial.ack_timeout.to_string(), Proven);
+        explained += 5;
+        name.map_or_else(|| format!("serial, unknown driver (code {})", serial.driver), |(name, _)| name.to_owned())
+    } else if let Some(ethernet) = channel.ethernet() {
+        add("IP Address", ethernet.address.to_string(), Proven);
+        add("Subnet Mask", ethernet.mask.to_string(), Proven);
+        add("Gateway Address", ethernet.gateway.to_string(), Proven);
+        add("Primary Name Server", ethernet.name_servers[0].to_string(), Inferred);
+        add("Secondary Name Server", ethernet.name_servers[1].to_string(), Inferred);
+        add("BOOTP Enable", yes(ethernet.bootp()), Proven);
+        add("DHCP Enable", yes(ethernet.dhcp()), Proven);
+        add("HTTP Server Enable", yes(ethernet.http()), Proven);
+        add("Modbus TCP Enable", yes(ethernet.modbus_tcp()), Inferred);
+        add("Msg Connection Timeout (x1 ms)", ethernet.connection_timeout.to_string(), Proven);
+        add("Msg Reply Timeout (x1 ms)", ethernet.reply_timeout.to_string(), Proven);
+        add("Inactivity Timeout (x1 min)", ethernet.inactivity_timeout.to_string(), Proven);
+        explained += 15;
+        "Ethernet".to_owned()
+    } else {
+        "not configured, or a driver not known".to_owned()
+    };
+    let words = channel.as_bytes().chunks_exact(2);
+    let used = words.filter(|word| *word != [0, 0]).count();
+    Channel { number, driver, settings, unexplained_words: used.saturating_sub(explained) }
+}
+
+pub(crate) fn memory(record: &rss::compiler::Compiler<'_>, model: u16) -> Option<Memory> {
+    let used = record.memory.in_use(rss::processor::Model(model))?;
+    Some(Memory {
+        instruction_words_used: used.instruction_words_used,
+        instruction_words_left: used.instruction_words_left,
+        data_words_used: used.data_words_used,
+        data_words_left: used.data_words_used.map(|_| record.memory.data_words_left),
+    })
+}

@@ -1,0 +1,167 @@
+//! `MEM DATABASE` to documentation: keys to targets, records to entries, comments by id.
+
+use std::collections::HashMap;
+
+use ladder::{Address, AddressEntry, Comment, CommentOwner, Documentation, InstructionComment, Target};
+use rss::Text;
+use rss::database::{Database, Entry};
+
+/// What a stored key is about. The key form is the address form with padded numbers, so the address
+/// parser reads it; the other forms are few.
+pub(crate) fn target(key: &str) -> Target {
+    if key.is_empty() {
+        return Target::Unassigned;
+    }
+    let number = |text: &str| text.parse::<u16>().ok();
+    if let Some(file) = key.strip_prefix("U:").and_then(number) {
+        return Target::ProgramFileOperand(file);
+    }
+    if let Some(file) = key.strip_prefix("PFILE:").and_then(number) {
+        return Target::ProgramFile(file);
+    }
+    if let Some(file) = key.strip_prefix("DFILE:").and_then(number) {
+        return Target::DataFile(file);
+    }
+    if let Some((file, label)) = key.strip_prefix('Q').and_then(|rest| rest.split_once(':'))
+        && let (Some(file), Some(label)) = (number(file), number(label))
+    {
+        return Target::Label { file, number: label };
+    }
+    match Address::parse(key) {
+        Ok(address) => Target::Address(address),
+        Err(_) => Target::Other(key.to_owned()),
+    }
+}
+
+/// The key a target is stored under, the inverse of [`target`].
+pub(crate) fn key(target: &Target) -> String {
+    match target {
+        Target::Address(address) => address_key(address),
+        Target::ProgramFileOperand(file) => format!("U:{file:05}"),
+        Target::Label { file, number } => format!("Q{file}:{number}"),
+        Target::ProgramFile(file) => format!("PFILE:{file:05}"),
+        Target::DataFile(file) => format!("DFILE:{file:05}"),
+        Target::Unassigned => String::new(),
+        Target::Other(key) => key.clone(),
+    }
+}
+
+fn address_key(address: &Address) -> String {
+    use ladder::Place;
+    let place = |place: &Place, width: usize| match place {
+        Place::Number(n) => format!("{n:0width$}"),
+        Place::Indirect(inner) => format!("[{}]", address_key(inner)),
+    };
+    let mut key = format!("{}{}:{}", address.file_type, place(&address.file, 4), place(&address.element, 3));
+    if let Some(word) = address.word {
+        key.push_str(&format!(".{word:03}"));
+    }
+    if let Some(bit) = &address.bit {
+        key.push_str(&format!("/{}", place(bit, 2)));
+    }
+    key
+}
+
+/// Lines without the blank ones at the end.
+fn lines(texts: &[Text<'_>]) -> Vec<String> {
+    let used = texts.iter().rposition(|text| !text.is_empty()).map_or(0, |last| last + 1);
+    texts.iter().take(used).map(|text| text.decode().into_owned()).collect()
+}
+
+/// Entries and instruction comments; rung comments are taken out of [`Comments`] by the rungs.
+pub(crate) fn documentation(database: &Database<'_>) -> Documentation {
+    let mut documentation = Documentation::default();
+    let mut targets: HashMap<u32, Target> = HashMap::with_capacity(database.addresses.len());
+    for entry in &database.addresses {
+        let target = target(&entry.key.decode());
+        targets.insert(entry.id, target.clone());
+        documentation.add(AddressEntry {
+            target,
+            symbol: entry.symbol.decode().into_owned(),
+            description: lines(&entry.lines),
+        });
+    }
+    let comment = |entry: &Entry<'_>| InstructionComment {
+        mnemonic: entry.mnemonic.decode().into_owned(),
+        target: targets.get(&entry.address_id).cloned(),
+        lines: lines(&entry.lines),
+    };
+    for entry in &database.instruction_comments {
+        documentation.add_instruction_comment(comment(entry));
+    }
+    documentation
+}
+
+/// Rung comments by the id that rungs hold.
+#[derive(Default)]
+pub(crate) struct Comments {
+    by_id: HashMap<u32, (Comment, bool)>,
+    order: Vec<u32>,
+}
+
+impl Comments {
+    pub(crate) fn new(database: &Database<'_>) -> Comments {
+        let mut comments = Comments::default();
+        for stored in &database.comments {
+            let owner = match stored.rung() {
+                Some((file, rung)) => CommentOwner::Rung { file: u16::try_from(file).unwrap_or(u16::MAX), rung },
+                None => CommentOwner::Address(target(&stored.key.decode())),
+            };
+            let comment =
+                Comment { text: stored.text.decode().into_owned(), title: stored.title.decode().into_owned(), owner };
+            if comments.by_id.insert(stored.id, (comment, false)).is_none() {
+                comments.order.push(stored.id);
+            }
+        }
+        comments
+    }
+
+    /// The comment a rung refers to. Comments attached to an address can be shown by several rungs.
+    pub(crate) fn shown(&mut self, id: u32) -> Option<Comment> {
+        let (comment, shown) = self.by_id.get_mut(&id)?;
+        *shown = true;
+        Some(comment.clone())
+    }
+
+    /// The comments no rung asked for, in stored order.
+    pub(crate) fn detached(mut self) -> Vec<Comment> {
+        let order = std::mem::take(&mut self.order);
+        order
+            .into_iter()
+            .filter_map(|id| self.by_id.remove(&id))
+            .filter_map(|(comment, shown)| (!shown).then_some(comment))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_lead_to_targets_and_back() {
+        for (stored, shown) in [
+            ("O0000:002.000/01", "O:2.0/1"),
+            ("I0001:003.000", "I:3.0"),
+            ("S0002:001/15", "S:1/15"),
+            ("L0009:008/31", "L9:8/31"),
+            ("T0004:000.001", "T4:0.PRE"),
+            ("C0005:000/13", "C5:0/DN"),
+            ("ST0151:007.000", "ST151:7.LEN"),
+            ("MG0068:000.017/13", "MG68:0/DN"),
+            ("HSC0000:000.007", "HSC:0.HIP"),
+            ("ES0001:005/00", "ES1:5/0"),
+            ("N[N0007:004]:021/00", "N[N7:4]:21/0"),
+            ("N0095:[N0007:174]/[N0007:176]", "N95:[N7:174]/[N7:176]"),
+            ("U:00244", "U:244"),
+            ("Q51:1", "Q51:1"),
+            ("CT0054:005", "CT0054:005"),
+        ] {
+            let target = target(stored);
+            assert_eq!(target.to_string(), shown);
+            assert_eq!(key(&target), stored);
+        }
+        assert_eq!(target("PFILE:00012"), Target::ProgramFile(12));
+        assert_eq!(target(""), Target::Unassigned);
+    }
+}

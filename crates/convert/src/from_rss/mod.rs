@@ -1,0 +1,259 @@
+//! A project file to the program model.
+//!
+//! Nothing is dropped silently: what a record holds and the model has no place for is reported in
+//! the project's diagnostics, and so is every deviation the byte layer found.
+
+mod configuration;
+pub(crate) mod documentation;
+mod program;
+
+use ladder::{DataFile, Diagnostic, FileType, Force, Image, Project, RevisionNote, Severity, Source};
+use rss::compiler::Compiler;
+use rss::data::{DataFiles, DataHolder, ExtensionalDataFiles};
+use rss::database::Database;
+use rss::program::ProgramFiles;
+use rss::small::{RevisionNotes, Version};
+use rss::summary::{Summary, id};
+use rss::{ImageKind, Mode, Record, StreamKind};
+
+use crate::codes;
+use documentation::Comments;
+
+/// Reads every image of a project file into the model. `source` names the file; the version and
+/// times are filled in here.
+pub fn project(file: &rss::Project, source: Source) -> Project {
+    let mut reader = ImageReader { file, diagnostics: Vec::new() };
+    for deviation in file.deviations() {
+        reader.diagnostics.push(diagnostic(Severity::Error, deviation));
+    }
+    let main = reader.image(ImageKind::Main);
+    let has = |kind| file.images().any(|image| image == kind);
+    let online = has(ImageKind::Online).then(|| reader.image(ImageKind::Online));
+    let autosave = has(ImageKind::Autosave).then(|| reader.image(ImageKind::Autosave));
+    let revision_notes = reader.revision_notes();
+    let source = reader.source(source);
+    Project { source, main, online, autosave, revision_notes, diagnostics: reader.diagnostics }
+}
+
+/// One stored instruction in the model, for callers that look at instructions alone.
+pub(crate) fn instruction(stored: &rss::program::Instruction<'_>) -> ladder::Instruction {
+    let mut unread = Vec::new();
+    let mut notes = Notes { stream: String::new(), record: String::new(), diagnostics: &mut unread };
+    program::instruction(stored, &mut notes)
+}
+
+fn diagnostic(severity: Severity, deviation: &rss::Deviation) -> Diagnostic {
+    let mut place = deviation.stream.escape_debug().to_string();
+    if !place.is_empty() {
+        place.push_str(", ");
+    }
+    place.push_str(&format!("{} {:#x}", deviation.space, deviation.offset));
+    if !deviation.record.is_empty() {
+        place.push_str(", in ");
+        place.push_str(&deviation.record);
+    }
+    Diagnostic { severity, place, message: format!("expected {}, found {}", deviation.expected, deviation.found) }
+}
+
+/// Where conversion notes what it could not carry over.
+pub(crate) struct Notes<'d> {
+    stream: String,
+    record: String,
+    diagnostics: &'d mut Vec<Diagnostic>,
+}
+
+impl Notes<'_> {
+    fn within(&mut self, record: String) {
+        self.record = record;
+    }
+
+    fn warning(&mut self, message: String) {
+        let place = format!("{}, in {}", self.stream, self.record);
+        self.diagnostics.push(Diagnostic { severity: Severity::Warning, place, message });
+    }
+}
+
+struct ImageReader<'f> {
+    file: &'f rss::Project,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl<'f> ImageReader<'f> {
+    /// A typed stream; what stopped reading it and what deviates goes to the diagnostics.
+    fn read<R: Record<'f>>(&mut self, image: ImageKind, kind: StreamKind) -> Option<R> {
+        let stream = self.file.stream(image, kind)?;
+        let parsed = rss::parse::<R>(stream.payload(), stream.path(), Mode::Permissive);
+        for deviation in &parsed.deviations {
+            self.diagnostics.push(diagnostic(Severity::Warning, deviation));
+        }
+        if let Some(error) = &parsed.error {
+            self.diagnostics.push(match error.deviation() {
+                Some(deviation) => diagnostic(Severity::Error, deviation),
+                None => Diagnostic {
+                    severity: Severity::Error,
+                    place: stream.path().to_owned(),
+                    message: error.to_string(),
+                },
+            });
+        }
+        Some(parsed.value)
+    }
+
+    fn image(&mut self, kind: ImageKind) -> Image {
+        let mut image = Image::default();
+        let mut model = 0;
+        if let Some(record) = self.read::<rss::processor::Processor<'_>>(kind, StreamKind::Processor) {
+            model = record.model.0;
+            image.processor = configuration::processor(&record);
+        }
+        if let Some(record) = self.read::<rss::io::IoConfiguration<'_>>(kind, StreamKind::IoConfiguration) {
+            image.io = configuration::io(&record);
+        }
+        if let Some(record) =
+            self.read::<rss::channel::ChannelConfiguration<'_>>(kind, StreamKind::ChannelConfiguration)
+        {
+            image.channels = configuration::channels(&record);
+        }
+        if let Some(record) = self.read::<Compiler<'_>>(kind, StreamKind::Compiler) {
+            image.memory = configuration::memory(&record, model);
+        }
+        self.data(kind, &mut image);
+        // The online image has no documentation of its own; its rungs refer to the main one's.
+        let database_of = if kind == ImageKind::Online { ImageKind::Main } else { kind };
+        let database = self.database(database_of, kind);
+        let mut comments = database.as_ref().map(Comments::new).unwrap_or_default();
+        if let Some(record) = self.read::<ProgramFiles<'_>>(kind, StreamKind::ProgramFiles) {
+            let mut notes = Notes {
+                stream: StreamKind::ProgramFiles.path(kind),
+                record: String::new(),
+                diagnostics: &mut self.diagnostics,
+            };
+            image.program_files = program::program_files(&record, &mut comments, &mut notes);
+        }
+        if let Some(database) = &database
+            && kind != ImageKind::Online
+        {
+            image.documentation = documentation::documentation(database);
+            image.documentation.detached_comments = comments.detached();
+        }
+        image
+    }
+
+    /// The database is read for the image it belongs to; reading it again for the online image must
+    /// not report its deviations twice.
+    fn database(&mut self, database_of: ImageKind, reader: ImageKind) -> Option<Database<'f>> {
+        let reported = self.diagnostics.len();
+        let database = self.read::<Database<'_>>(database_of, StreamKind::MemDatabase);
+        if database_of != reader {
+            self.diagnostics.truncate(reported);
+        }
+        database
+    }
+
+    fn data(&mut self, kind: ImageKind, image: &mut Image) {
+        let plain = self.read::<DataFiles<'_>>(kind, StreamKind::DataFiles).map(|files| files.0);
+        let twin = self.read::<ExtensionalDataFiles<'_>>(kind, StreamKind::ExtensionalDataFiles).map(|files| files.0);
+        // Both streams hold the same tables; the one that reads further is taken.
+        let holder = match (plain, twin) {
+            (Some(plain), Some(twin)) => {
+                self.compare_twins(kind, &plain, &twin);
+                if count(&twin) > count(&plain) { twin } else { plain }
+            }
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => return,
+        };
+        image.data_files = holder.user.iter().map(data_file).collect();
+        image.function_files = holder.function.iter().map(data_file).collect();
+        let module_files = holder.m.iter().map(data_file).filter(|file| file.elements > 0);
+        image.data_files.extend(module_files);
+        let status = image.data_file(FileType::S, 2);
+        image.processor.deny_future_access = status.and_then(|file| file.words.get(1)).map(|word| word & 0x4000 != 0);
+    }
+
+    fn compare_twins(&mut self, kind: ImageKind, plain: &DataHolder<'_>, twin: &DataHolder<'_>) {
+        let all = |holder: &'_ DataHolder<'_>| holder.user.len() + holder.function.len() + holder.m.len();
+        let pairs = plain.user.iter().zip(&twin.user).chain(plain.function.iter().zip(&twin.function));
+        let differing = pairs.filter(|(a, b)| a.data != b.data || a.forces != b.forces || a.name != b.name).count();
+        if differing > 0 || all(plain) != all(twin) {
+            self.diagnostics.push(Diagnostic {
+                severity: Severity::Warning,
+                place: StreamKind::ExtensionalDataFiles.path(kind),
+                message: format!(
+                    "expected the same tables as in {}, found {differing} that differ ({} and {} files)",
+                    StreamKind::DataFiles.name(),
+                    all(plain),
+                    all(twin)
+                ),
+            });
+        }
+    }
+
+    fn revision_notes(&mut self) -> Vec<RevisionNote> {
+        let record = self.read::<RevisionNotes<'_>>(ImageKind::Main, StreamKind::RevisionNotes);
+        let notes = record.map(|record| record.notes).unwrap_or_default();
+        let note = |(revision, note): (u32, rss::Text<'_>)| RevisionNote { revision, note: note.decode().into_owned() };
+        notes.into_iter().map(note).collect()
+    }
+
+    fn source(&mut self, mut source: Source) -> Source {
+        if let Some(version) = self.read::<Version<'_>>(ImageKind::Main, StreamKind::Version) {
+            source.saved_by = version.version.decode().into_owned();
+        }
+        let Some(stream) = self.file.stream(ImageKind::Main, StreamKind::SummaryInformation) else { return source };
+        match Summary::read(stream.payload()) {
+            Ok(summary) => {
+                source.application = summary.text(id::APPLICATION).map(|text| text.into_owned()).unwrap_or_default();
+                source.saved_at = summary.time(id::SAVED).and_then(rfc3339);
+                source.created_at = summary.time(id::CREATED).and_then(rfc3339);
+            }
+            Err(error) => self.diagnostics.push(match error.deviation() {
+                Some(deviation) => diagnostic(Severity::Warning, deviation),
+                None => Diagnostic {
+                    severity: Severity::Warning,
+                    place: "summary properties".to_owned(),
+                    message: error.to_string(),
+                },
+            }),
+        }
+        source
+    }
+}
+
+fn count(holder: &DataHolder<'_>) -> usize {
+    holder.user.len() + holder.function.len() + holder.m.len()
+}
+
+fn data_file(stored: &rss::data::DataFile<'_>) -> DataFile {
+    let forces = (0..stored.forces.len() / 2).filter_map(|index| stored.force(index));
+    DataFile {
+        number: stored.number,
+        file_type: codes::file_type(stored.type_code.0),
+        name: stored.name.decode().into_owned(),
+        description: stored.description.decode().into_owned(),
+        elements: stored.elements,
+        words_per_element: stored.words,
+        words: stored.data.iter().collect(),
+        forces: forces.map(|(on, off)| Force { on, off }).collect(),
+    }
+}
+
+/// Seconds from 1601, where Windows file times start, to 1970.
+const EPOCH_SECONDS: i64 = 11_644_473_600;
+
+/// A Windows file time (100 ns since 1601, UTC) to the second.
+fn rfc3339(ticks: u64) -> Option<String> {
+    let seconds = i64::try_from(ticks / 10_000_000).ok()?.checked_sub(EPOCH_SECONDS)?;
+    Some(jiff::Timestamp::from_second(seconds).ok()?.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_times_are_utc() {
+        assert_eq!(rfc3339(116_444_736_000_000_000).as_deref(), Some("1970-01-01T00:00:00Z"));
+        assert_eq!(rfc3339(128_166_372_003_061_629).as_deref(), Some("2007-02-22T17:00:00Z"));
+        assert_eq!(rfc3339(u64::MAX), None);
+    }
+}

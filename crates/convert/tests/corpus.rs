@@ -1,0 +1,81 @@
+//! Every project of the corpus through the model: code against texts, known counts.
+
+use std::path::{Path, PathBuf};
+
+use convert::{from_rss, verify};
+use ladder::{ProgramFileKind, Source};
+
+/// The corpus folder, or `None` with a line that says so.
+fn corpus() -> Option<PathBuf> {
+    let folder = std::env::var_os("RUNGS_CORPUS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: corpus not present");
+    None
+}
+
+fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            projects(&path, found);
+        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
+            found.push(path);
+        }
+    }
+}
+
+fn read(path: &Path) -> Option<rss::Project> {
+    rss::Project::read(&std::fs::read(path).expect("file"), rss::Mode::Permissive).ok()
+}
+
+#[test]
+fn compiled_code_is_what_the_operand_texts_compile_to() {
+    let Some(folder) = corpus() else { return };
+    let mut files = Vec::new();
+    projects(&folder, &mut files);
+    let (mut agrees, mut not_compiled, mut differs) = (0, 0, Vec::new());
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let check = verify::check_code(&project);
+        agrees += check.agrees;
+        not_compiled += check.not_compiled;
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("").to_owned();
+        differs.extend(check.differs.into_iter().chain(check.not_comparable).map(|d| (name.clone(), d)));
+    }
+    println!("{agrees} instructions agree, {} differ, {not_compiled} were never compiled", differs.len());
+    for difference in &differs {
+        println!("{difference:?}");
+    }
+    assert!(agrees > 100_000, "{agrees}");
+    // One instruction of one program stores a symbol as text while its code has the address.
+    let others: Vec<_> =
+        differs.iter().filter(|(_, d)| d.text.split(' ').next() != Some("LOAD_CELL_RAW_INPUT")).collect();
+    assert!(others.is_empty(), "{} instructions differ", others.len());
+}
+
+#[test]
+fn counts_of_a_large_program() {
+    let Some(folder) = corpus() else { return };
+    let project = read(&folder.join("acd/LANLOGIX_BR.RSS")).expect("a project");
+    let project = from_rss::project(&project, Source::default());
+    for image in [Some(&project.main), project.online.as_ref()].into_iter().flatten() {
+        let ladder: Vec<_> = image.ladder_files().collect();
+        assert_eq!(ladder.len(), 41);
+        assert_eq!(image.program_files.len(), 256);
+        assert_eq!(image.program_files.iter().filter(|f| f.kind == ProgramFileKind::System).count(), 2);
+        let rungs = || ladder.iter().flat_map(|file| &file.rungs);
+        assert_eq!(rungs().count(), 1016);
+        assert_eq!(rungs().filter(|rung| rung.is_end()).count(), 41);
+        let count = |mnemonic: &str| rungs().flat_map(|r| r.instructions()).filter(|i| i.mnemonic == mnemonic).count();
+        assert_eq!(rungs().flat_map(|r| r.instructions()).count(), 8519);
+        for (mnemonic, number) in
+            [("XIC", 2977), ("MOV", 951), ("TON", 112), ("RTO", 15), ("CPT", 69), ("JSR", 38), ("MSG", 3)]
+        {
+            assert_eq!(count(mnemonic), number, "{mnemonic}");
+        }
+    }
+}
