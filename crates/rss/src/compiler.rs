@@ -73,7 +73,8 @@ impl Memory {
             return None;
         }
         let left = self.bytes_free / 8;
-        let used = total_bytes.checked_sub(8 * left)? / 8;
+        // Both are rounded down, so they can add up to one less than there are.
+        let used = total_bytes.checked_sub(self.bytes_free)? / 8;
         Some(MemoryUse { instruction_words_used: used, instruction_words_left: left, data_words_used: None })
     }
 }

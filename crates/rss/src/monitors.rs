@@ -82,8 +82,14 @@ pub struct MonitorEntry<'a> {
     pub byte: u8,
     /// Radix code (inferred).
     pub radix: u32,
-    /// Two numbers `FFFFFFFF` and nine bytes (unknown).
-    pub rest: [u8; 17],
+    /// `FFFFFFFF`; 0x40 on a line that shows one bit of the word above it (inferred).
+    pub field_5: u32,
+    /// `FFFFFFFF`; the bit number on such a line (inferred).
+    pub bit: u32,
+    /// Empty; the bit as shown, `/15`, on such a line (inferred).
+    pub suffix: Text<'a>,
+    /// Two numbers (unknown).
+    pub last: [u32; 2],
 }
 
 impl<'a> Record<'a> for Monitors<'a> {
@@ -131,7 +137,11 @@ impl<'a> Record<'a> for Monitors<'a> {
                 w.string(&item.strings[1])?;
                 w.u8(item.byte);
                 w.u32(item.radix);
-                w.bytes(&item.rest);
+                w.u32(item.field_5);
+                w.u32(item.bit);
+                w.string(&item.suffix)?;
+                w.u32(item.last[0]);
+                w.u32(item.last[1]);
             }
             w.u8(monitor.before_name);
             w.string(&monitor.name)?;
@@ -164,7 +174,10 @@ fn read_files<'a>(r: &mut Reader<'a>, kind: MonitorKind) -> Result<Vec<Monitor<'
                 strings: [r.string("an empty text")?, r.string("an empty text")?],
                 byte: r.u8("a byte")?,
                 radix: r.u32("a radix")?,
-                rest: r.array("the rest of an entry")?,
+                field_5: r.u32("field 5 of an entry")?,
+                bit: r.u32("a bit number")?,
+                suffix: r.string("a bit suffix")?,
+                last: [r.u32("a number of an entry")?, r.u32("a number of an entry")?],
             });
         }
         monitor.before_name = r.u8("a byte before the name")?;
@@ -184,8 +197,6 @@ impl Monitors<'static> {
     /// The stream of a new project: one monitor with one empty line.
     #[must_use]
     pub fn empty(kind: MonitorKind) -> Self {
-        let mut rest = [0; 17];
-        rest[..8].fill(0xFF);
         let (window, extra) = match kind {
             MonitorKind::Custom => ([0x145, 0x96, 0xA2, 0x87, 0], MonitorExtra::None),
             MonitorKind::Graphic => ([0x253, 0x1C2, 0x5A, 0x78, 0], MonitorExtra::Graphic([0; 4])),
@@ -200,7 +211,12 @@ impl Monitors<'static> {
         Monitors {
             kind,
             files: vec![Monitor {
-                entries: vec![MonitorEntry { radix: 0x0B, rest, ..MonitorEntry::default() }],
+                entries: vec![MonitorEntry {
+                    radix: 0x0B,
+                    field_5: u32::MAX,
+                    bit: u32::MAX,
+                    ..MonitorEntry::default()
+                }],
                 before_name: 0,
                 name: Text::from_bytes(b"Untitled"),
                 window: window_bytes(window),
@@ -275,21 +291,19 @@ mod tests {
     use crate::error::Mode;
 
     #[test]
-    fn a_custom_monitor_with_two_addresses() {
+    fn a_custom_monitor_with_a_word_and_one_of_its_bits() {
         let mut bytes = b"\xFF\xFF\x80\0\x0C\0CWatchHolder\x01\0\xFF\xFF\x80\0\x0A\0CWatchFile\x02\0".to_vec();
-        for (tag, address) in [(&b"\xFF\xFF\x80\0\x0A\0CWatchData"[..], "N7:0"), (b"\x05\x80", "B3:1/2")] {
-            bytes.extend(tag);
-            bytes.push(address.len() as u8);
-            bytes.extend(address.bytes());
-            bytes.extend(b"\0\0\0\x02\0\0\0\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF\0\0\0\0\0\0\0\0\0");
-        }
+        bytes.extend(b"\xFF\xFF\x80\0\x0A\0CWatchData\x04N7:0\0\0\0\x02\0\0\0");
+        bytes.extend(b"\xFF\xFF\xFF\xFF\xFF\xFF\xFF\xFF\0\x01\0\0\0\0\0\0\0");
+        bytes.extend(b"\x05\x80\x06N7:0/2\0\0\0\0\0\0\0\x40\0\0\0\x02\0\0\0\x02/2\x20\0\0\0\x01\0\0\0");
         bytes.extend(b"\0\x05Pumps");
         bytes.extend([9; 16]);
         let parsed = parse::<Monitors>(&bytes, "S", Mode::Strict);
         assert_eq!((parsed.error, parsed.understood), (None, bytes.len()));
         let entries = &parsed.value.files[0].entries;
-        assert_eq!(entries[1].address, "B3:1/2");
         assert_eq!(entries[0].radix, 2);
+        assert_eq!(entries[1].address, "N7:0/2");
+        assert_eq!((entries[1].bit, entries[1].suffix.to_string()), (2, "/2".to_owned()));
         assert_eq!(serialize(&parsed.value), Ok(bytes));
     }
 

@@ -93,12 +93,12 @@ impl Processor<'_> {
     }
 
     /// The route taken apart: host, driver, address; `None` if it is empty or
-    /// has another shape.
+    /// names no host.
     #[must_use]
     pub fn route_parts(&self) -> Option<Route> {
         let route = self.route.decode();
         let (host, rest) = route.split_once('!')?;
-        let (driver, address) = rest.split_once('\\')?;
+        let (driver, address) = rest.split_once('\\').unwrap_or((rest, ""));
         Some(Route { host: host.to_owned(), driver: driver.to_owned(), address: address.to_owned() })
     }
 }
@@ -110,7 +110,7 @@ pub struct Route {
     pub host: String,
     /// Name of the communication driver.
     pub driver: String,
-    /// Node number or IP address.
+    /// Node number or IP address; empty if no controller was chosen.
     pub address: String,
 }
 

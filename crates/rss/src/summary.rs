@@ -34,7 +34,7 @@ pub mod id {
     pub const WORDS_LEFT: u32 = 23;
     /// Instruction words used (I4).
     pub const WORDS_USED: u32 = 24;
-    /// Program files (I4).
+    /// Program files, unused numbers not counted (I4).
     pub const PROGRAM_FILES: u32 = 25;
     /// Data files, unused ones not counted (I4).
     pub const DATA_FILES: u32 = 32;
@@ -225,7 +225,7 @@ pub struct NewSummary<'a> {
     pub program_id: u16,
     /// Instruction words used and left; `None` if not verified.
     pub instruction_words: Option<(u32, u32)>,
-    /// Program files.
+    /// Program files, unused numbers not counted.
     pub program_files: u32,
     /// Data files, unused ones not counted.
     pub data_files: u32,
