@@ -14,6 +14,8 @@ pub struct ChannelConfiguration<'a> {
     pub channels: Vec<Channel<'a>>,
     /// Bytes after the channels: eleven zeros where there is no channel, else none (unknown).
     pub tail: &'a [u8],
+    /// Everything after the model where it is no list of channels: carried, not understood.
+    pub other_shape: Option<&'a [u8]>,
 }
 
 /// One channel: words that hold a sequence of records.
@@ -30,9 +32,43 @@ impl<'a> Record<'a> for ChannelConfiguration<'a> {
     fn read(&mut self, r: &mut Reader<'a>) -> Result<()> {
         r.expect_object("CChannelConfig")?;
         self.model = Model(r.u16("the processor model")?);
+        r.mark();
+        let start = r.checkpoint();
+        if let Err(error) = self.read_channels(r) {
+            // Only models of eight codes are known: another one may well keep
+            // its channels in another shape, which is no reason to lose them.
+            r.rewind(&start);
+            r.deviation("a list of channels", error)?;
+            self.channels.clear();
+            self.tail = &[];
+            self.other_shape = Some(r.opaque("a channel configuration of another shape", r.remaining())?);
+        }
+        Ok(())
+    }
+
+    fn write(&self, w: &mut Writer) -> Result<()> {
+        w.object("CChannelConfig");
+        w.u16(self.model.0);
+        if let Some(body) = self.other_shape {
+            w.bytes(body);
+            return Ok(());
+        }
+        let count = u8::try_from(self.channels.len())
+            .map_err(|_| crate::error::Error::Unwritable(format!("{} channels", self.channels.len())))?;
+        w.u8(count);
+        for channel in &self.channels {
+            w.count_u16(channel.bytes.len() / 2)?;
+            w.bytes(channel.bytes);
+        }
+        w.bytes(self.tail);
+        Ok(())
+    }
+}
+
+impl<'a> ChannelConfiguration<'a> {
+    fn read_channels(&mut self, r: &mut Reader<'a>) -> Result<()> {
         let count = usize::from(r.u8("the number of channels")?);
         r.check_room("a number of channels", count, 2)?;
-        r.mark();
         for index in 0..count {
             r.enter("channel", index)?;
             let words = r.count_u16("a number of words", 2)?;
@@ -40,18 +76,12 @@ impl<'a> Record<'a> for ChannelConfiguration<'a> {
             let bytes = r.bytes("the words of a channel", 2 * words)?;
             let channel = Channel { bytes };
             self.channels.push(channel);
-            for record in channel.records() {
-                match record {
-                    // A stale check value is common in one record kind; the
-                    // settings it covers are still the stored ones.
-                    Ok(_) => {}
-                    Err(offset) => {
-                        r.deviation_at(at + offset, "a record that ends inside its channel", "one that does not")?
-                    }
-                }
+            // A stale check value is common in one record kind, and the settings
+            // it covers are still the stored ones: only the split is checked.
+            for offset in channel.records().filter_map(std::result::Result::err) {
+                r.deviation_at(at + offset, "a record that ends inside its channel", "one that does not")?;
             }
             r.leave();
-            r.mark();
         }
         let expected = if count == 0 { NO_CHANNEL_TAIL } else { 0 };
         let found = r.remaining();
@@ -61,20 +91,6 @@ impl<'a> Record<'a> for ChannelConfiguration<'a> {
             r.deviation(format_args!("{expected} bytes after {count} channels"), found)?;
             self.tail = r.opaque("the bytes after the channels", found)?;
         }
-        Ok(())
-    }
-
-    fn write(&self, w: &mut Writer) -> Result<()> {
-        w.object("CChannelConfig");
-        w.u16(self.model.0);
-        let count = u8::try_from(self.channels.len())
-            .map_err(|_| crate::error::Error::Unwritable(format!("{} channels", self.channels.len())))?;
-        w.u8(count);
-        for channel in &self.channels {
-            w.count_u16(channel.bytes.len() / 2)?;
-            w.bytes(channel.bytes);
-        }
-        w.bytes(self.tail);
         Ok(())
     }
 }
@@ -441,6 +457,17 @@ mod tests {
         let parsed = parse::<ChannelConfiguration>(&bytes, "S", Mode::Permissive);
         assert_eq!((parsed.error, parsed.deviations.len()), (None, 1));
         assert_eq!(serialize(&parsed.value), Ok(bytes));
+    }
+
+    #[test]
+    fn a_body_of_another_shape_is_carried() {
+        let bytes = b"\xFF\xFF\x80\0\x0E\0CChannelConfig\x31\0\x02\xFF\xFFshort".to_vec();
+        let parsed = parse::<ChannelConfiguration>(&bytes, "S", Mode::Permissive);
+        assert_eq!((parsed.error, parsed.deviations.len()), (None, 1));
+        assert_eq!(parsed.understood, bytes.len() - 8);
+        assert_eq!(parsed.value.other_shape, Some(&b"\x02\xFF\xFFshort"[..]));
+        assert_eq!(serialize(&parsed.value), Ok(bytes.clone()));
+        assert!(parse::<ChannelConfiguration>(&bytes, "S", Mode::Strict).error.is_some());
     }
 
     #[test]

@@ -96,9 +96,6 @@ pub struct PackedModule {
 pub const SLOTS: usize = 31;
 /// Bytes of zeros between the slots and the rack of the slot form.
 const SLOT_REST: usize = 1282;
-/// Bytes of the slot form after the model code.
-const SLOT_FORM: usize = SLOTS * SLOT_RECORD + 2 + SLOT_REST + 4;
-const SLOT_RECORD: usize = 24;
 
 /// Slot form (proven layout for models 8, 28 and 36).
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -111,6 +108,8 @@ pub struct SlotIo<'a> {
     pub rest: &'a [u8],
     /// 5, 5, 5, 0: three chassis, 5 probably "none" (unknown).
     pub rack: [u8; 4],
+    /// Bytes beyond the known length; never seen, carried.
+    pub extra: &'a [u8],
 }
 
 /// One slot of the slot form.
@@ -245,29 +244,44 @@ impl<'a> Record<'a> for IoConfiguration<'a> {
         self.model = Model(r.u16("the processor model")?);
         r.mark();
         let start = r.checkpoint();
+        let at = r.offset();
         // An unknown model is tried in both forms. Each must use up the stream
         // exactly, which no stream of the other form does.
-        let forms = match processor_model(self.model.0).map(|model| model.io_form) {
+        let usual = processor_model(self.model.0).map(|model| model.io_form);
+        let forms = match usual {
             Some(IoForm::Packed) => [IoForm::Packed, IoForm::Slots],
             Some(IoForm::Slots) | None => [IoForm::Slots, IoForm::Packed],
         };
-        let mut first_error = None;
-        for (turn, form) in forms.into_iter().enumerate() {
-            match read_form(r, form) {
+        let mut why = String::new();
+        for form in forms {
+            match read_form(r, form, usual.is_some()) {
                 Ok(layout) => {
                     self.layout = layout;
-                    if turn > 0 && processor_model(self.model.0).is_some() {
-                        r.deviation_at(0, format_args!("the I/O form of model {}", self.model.0), "the other form")?;
+                    if usual.is_some_and(|usual| usual != form) {
+                        r.deviation_at(at, format_args!("the I/O form of model {}", self.model.0), "the other form")?;
                     }
-                    return self.check(r);
+                    return self.check(r, at);
                 }
                 Err(error) => {
-                    first_error.get_or_insert(error);
+                    if why.is_empty() {
+                        why = error.to_string();
+                    }
                     r.rewind(&start);
                 }
             }
         }
-        let why = first_error.map(|error| error.to_string()).unwrap_or_default();
+        // Both forms were learnt from controllers without a chassis. A longer
+        // table whose slots fit together is taken for slots, and says so.
+        if let Ok(mut io) = read_slots(r)
+            && io.fits_together()
+        {
+            let more = r.remaining();
+            r.deviation("the end of the slot form", format_args!("{more} more bytes, carried"))?;
+            io.extra = r.opaque("bytes after the slot form", more)?;
+            self.layout = IoLayout::Slots(io);
+            return Ok(());
+        }
+        r.rewind(&start);
         r.deviation("an I/O configuration of a known form", why)?;
         self.layout = IoLayout::Opaque(r.opaque("an I/O configuration", r.remaining())?);
         Ok(())
@@ -285,16 +299,16 @@ impl<'a> Record<'a> for IoConfiguration<'a> {
     }
 }
 
-fn read_form<'a>(r: &mut Reader<'a>, form: IoForm) -> Result<IoLayout<'a>> {
+/// Reads one form, to the end. Slots of a model that is not `known` must also fit together.
+fn read_form<'a>(r: &mut Reader<'a>, form: IoForm, known: bool) -> Result<IoLayout<'a>> {
     let layout = match form {
         IoForm::Packed => IoLayout::Packed(read_packed(r)?),
         IoForm::Slots => {
-            if r.remaining() != SLOT_FORM {
-                return Err(
-                    r.fault(format_args!("{SLOT_FORM} bytes of slots"), format_args!("{} bytes", r.remaining()))
-                );
+            let io = read_slots(r)?;
+            if !known && !io.fits_together() {
+                return Err(r.fault("slots whose words follow one another", "words that do not"));
             }
-            IoLayout::Slots(read_slots(r)?)
+            IoLayout::Slots(io)
         }
     };
     match r.remaining() {
@@ -419,6 +433,7 @@ fn read_slots<'a>(r: &mut Reader<'a>) -> Result<SlotIo<'a>> {
         expansion_slots: r.u16("expansion slots")?,
         rest: r.bytes("bytes after the slots", SLOT_REST)?,
         rack: r.array("the rack")?,
+        extra: &[],
     })
 }
 
@@ -430,30 +445,71 @@ fn write_slots(io: &SlotIo<'_>, w: &mut Writer) {
     w.u16(io.expansion_slots);
     w.bytes(io.rest);
     w.bytes(&io.rack);
+    w.bytes(io.extra);
+}
+
+impl SlotIo<'_> {
+    /// Whether each slot's words begin where those of the slots before it end,
+    /// and at least one slot has words: a check that other data would not pass.
+    fn fits_together(&self) -> bool {
+        let (mut input, mut output) = (0u16, 0u16);
+        for slot in self.slots.iter() {
+            let words = slot.words();
+            let follows = |count, first, next| count == 0 || first == next;
+            if !follows(words.input_words, words.first_input, input)
+                || !follows(words.output_words, words.first_output, output)
+            {
+                return false;
+            }
+            // 31 slots of at most 128 words stay far below 65,536.
+            input += words.input_words;
+            output += words.output_words;
+        }
+        input + output > 0
+    }
 }
 
 /// Words of the packed table before slot 1, and of each module.
 const PACKED_BASE: u32 = 10;
 const PACKED_MODULE: u32 = 13;
+/// Bytes of the packed form before the offset of slot 0, and from there to the base configuration.
+const BEFORE_OFFSET: usize = 28;
+const OFFSET_AND_COUNT: usize = 4;
+/// Bytes of a module before its offset, and behind its configuration.
+const MODULE_BEFORE_OFFSET: usize = 4;
+const MODULE_AFTER_CONFIG: usize = 26;
 
 impl IoConfiguration<'_> {
-    /// Reports what contradicts itself; the values stand as stored.
-    fn check(&self, r: &mut Reader<'_>) -> Result<()> {
-        let IoLayout::Packed(io) = &self.layout else {
-            return Ok(());
+    /// Reports what contradicts itself; the values stand as stored. `at` is the
+    /// offset behind the model code.
+    fn check(&self, r: &mut Reader<'_>, at: usize) -> Result<()> {
+        let io = match &self.layout {
+            IoLayout::Packed(io) => io,
+            IoLayout::Slots(io) if io.fits_together() => return Ok(()),
+            IoLayout::Slots(_) => {
+                return r.deviation_at(at, "slots whose words follow one another", "words that do not");
+            }
+            IoLayout::Opaque(_) => return Ok(()),
         };
+        let mut at = at + BEFORE_OFFSET;
         let base = 2 + 2 * u32::from(io.slot_count);
         if u32::from(io.offset) != base {
-            r.deviation_at(0, format_args!("offset {base} of slot 0"), io.offset)?;
+            r.deviation_at(at, format_args!("offset {base} of slot 0"), io.offset)?;
         }
+        at += OFFSET_AND_COUNT + 2 * io.config.len();
         for (index, module) in (1u16..).zip(&io.modules) {
-            if module.slot != index {
-                r.deviation_at(0, format_args!("slot {index}"), module.slot)?;
-            }
+            r.enter("slot", usize::from(index))?;
+            at += MODULE_BEFORE_OFFSET;
             let offset = u32::from(io.offset) + PACKED_BASE + PACKED_MODULE * u32::from(index - 1);
             if u32::from(module.offset) != offset {
-                r.deviation_at(0, format_args!("offset {offset} of slot {index}"), module.offset)?;
+                r.deviation_at(at, format_args!("offset {offset}"), module.offset)?;
             }
+            at += OFFSET_AND_COUNT + 2 * module.config.len();
+            if module.slot != index {
+                r.deviation_at(at, format_args!("slot number {index}"), module.slot)?;
+            }
+            at += MODULE_AFTER_CONFIG;
+            r.leave();
         }
         Ok(())
     }

@@ -87,8 +87,43 @@ fn the_form_of_another_model_is_a_deviation() {
 }
 
 #[test]
+fn a_longer_slot_table_is_read_as_far_as_it_is_known() {
+    let bytes = stream(0x31, &[slots(), vec![7; 9]].concat());
+    let parsed = parse::<IoConfiguration>(&bytes, "S", Mode::Permissive);
+    assert_eq!((parsed.error, parsed.deviations.len()), (None, 1));
+    assert_eq!(parsed.understood, bytes.len() - 9);
+    assert_eq!(parsed.value.slots().len(), 2);
+    assert_eq!(serialize(&parsed.value), Ok(bytes));
+}
+
+#[test]
+fn slots_that_do_not_fit_together_are_no_slots_of_an_unknown_model() {
+    for (model, opaque) in [(8, false), (0x31, true)] {
+        let bytes = stream(model, &[9; 2032]);
+        let parsed = parse::<IoConfiguration>(&bytes, "S", Mode::Permissive);
+        assert_eq!((parsed.error, parsed.deviations.len()), (None, 1));
+        assert_eq!(matches!(parsed.value.layout, IoLayout::Opaque(_)), opaque);
+        assert_eq!(serialize(&parsed.value), Ok(bytes));
+    }
+}
+
+#[test]
+fn contradictions_are_located() {
+    let mut body = packed();
+    let slot = body.len() - 26;
+    body[slot] = 5;
+    let bytes = stream(63, &body);
+    let parsed = parse::<IoConfiguration>(&bytes, "S", Mode::Permissive);
+    assert_eq!(parsed.error, None);
+    let [deviation] = &parsed.deviations[..] else { panic!("one deviation") };
+    assert_eq!(deviation.offset, 15 + slot);
+    assert_eq!(deviation.record, "slot 1");
+    assert_eq!(serialize(&parsed.value), Ok(bytes));
+}
+
+#[test]
 fn any_other_body_is_carried() {
-    for body in [&b"\x01"[..], &packed()[..40], &[0; 2000], &[slots(), vec![0]].concat()] {
+    for body in [&b"\x01"[..], &packed()[..40], &[0; 2000], &[slots()[1..].to_vec(), vec![0; 9]].concat()] {
         for model in [8, 61, 0x123] {
             let bytes = stream(model, body);
             let parsed = parse::<IoConfiguration>(&bytes, "S", Mode::Permissive);
