@@ -32,7 +32,7 @@ pub mod structural;
 
 pub use families::Families;
 pub use model::{
-    Category, Drawing, Evidence, Extent, Form, Instruction, Kind, Names, Operand, Role, Stored, TextCount, TextLevel,
-    Touch,
+    Category, Drawing, Evidence, Extent, Form, Instruction, Kind, Names, Operand, Position, Role, Stored, TextCount,
+    TextLevel, Touch,
 };
 pub use set::{all, by_mnemonic, by_opcode};

@@ -140,7 +140,7 @@ impl TextCount {
 }
 
 /// One operand of a form.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Operand {
     /// Name as printed in the box; a plain word where nothing is printed (`Bit` of a contact).
     pub name: &'static str,
@@ -275,7 +275,7 @@ pub enum Kind {
     RoutingBlock,
     /// Start of a block of words used by a control instruction.
     ControlBlock,
-    /// A slot.
+    /// A slot number or an I/O word of the slot: input words for IIM, output words for IOM.
     Slot,
     /// A slot mask or list.
     Slots,

@@ -108,7 +108,12 @@ pub(super) const SET: &[Instruction] = &[
             "Stores the source with its sign changed.",
         )
     },
-    math("CLR", "Clear", &[form(0x14, Evidence::Printed, Families::ALL, DEST).text(TextLevel::Seen)], "Stores 0."),
+    math(
+        "CLR",
+        "Clear",
+        &[form(0x14, Evidence::Printed, Families::ALL, DEST).text(TextLevel::Seen)],
+        "Stores 0 in the destination.",
+    ),
     Instruction {
         names: Names::Unconfirmed,
         ..math(

@@ -20,9 +20,7 @@ const OPERANDS: &[Operand] = &[
 const fn timer(opcode: u16, base: TimeBase, evidence: Evidence, text: TextLevel) -> Form {
     let families = match base {
         TimeBase::Centisecond => Families::ALL,
-        // The fixed controllers and the 5/01 time in hundredths only by their manual, yet projects for
-        // fixed controllers use the base 1.0 s.
-        TimeBase::Second => Families::ALL,
+        TimeBase::Second => Families::SLC_5_02_UP.and(Families::ML_1000).and(Families::ML_FUNCTION_FILES),
         TimeBase::Millisecond => Families::ML_FUNCTION_FILES,
     };
     form(opcode, evidence, families, OPERANDS).flags(&["EN", "DN"]).code(&[0]).base(base).text(text)
