@@ -148,7 +148,7 @@ impl Form {
         Form { text, ..self }
     }
 
-    pub(crate) const fn stored_as(self, other: &'static str) -> Form {
+    pub(crate) const fn with_code_of(self, other: &'static str) -> Form {
         Form { stored_as: Some(other), ..self }
     }
 }

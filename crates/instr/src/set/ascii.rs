@@ -177,7 +177,7 @@ pub(super) const SET: &[Instruction] = &[
         "AWT",
         "ASCII Write",
         Names::Manual,
-        &[port(form(0x83, Evidence::Samples, FAMILIES, WRITTEN).stored_as("AWA"))],
+        &[port(form(0x83, Evidence::Samples, FAMILIES, WRITTEN).with_code_of("AWA"))],
         "As AWA without the append characters. RSLogix stores it with the code of AWA.",
     ),
 ];
