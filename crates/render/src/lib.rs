@@ -1,1 +1,137 @@
-//! Rungs drawn as terminal text.
+//! Rungs drawn the way RSLogix prints them, as terminal text.
+//!
+//! ```
+//! use ladder::{Documentation, Element, Image, Instruction, Mnemonic, Operand, ProgramFile, ProgramFileKind, Rung};
+//!
+//! let instruction = |name: &'static str, bit| {
+//!     Element::Instruction(Instruction::new(Mnemonic::named(name), vec![Operand::parse(bit)]))
+//! };
+//! let file = ProgramFile {
+//!     number: 2,
+//!     name: "MAIN".into(),
+//!     description: String::new(),
+//!     kind: ProgramFileKind::Ladder,
+//!     rungs: vec![Rung::new(vec![instruction("XIC", "I:0.0/3"), instruction("OTE", "O:0.0/1")])],
+//! };
+//! let style = render::Style { width: 60, ..render::Style::default() };
+//! let text = render::rung(&Image::default(), &file, 0, &Documentation::default(), &style);
+//! assert_eq!(text.lines().collect::<Vec<_>>(), [
+//!     "      │  I:0                                          O:0  │",
+//!     "0000  ├──┤ ├──────────────────────────────────────────( )──┤",
+//!     "      │   3                                            1   │",
+//!     "      │                                                    │",
+//! ]);
+//! ```
+//!
+//! Layout is separate from painting: [`scene`] gives the items of a rung with their places on a
+//! grid, which any other painter can use; [`rung`] paints them as text. This crate reads no files and
+//! knows no terminal: width and colour are given in [`Style`].
+
+mod face;
+mod layout;
+mod leaf;
+mod paint;
+mod plain;
+mod rung;
+pub mod scene;
+mod text;
+
+use std::io;
+use std::ops::RangeInclusive;
+
+use ladder::{Documentation, Image, ProgramFile};
+
+/// Narrowest drawing; a smaller [`Style::width`] is taken as this.
+pub const MIN_WIDTH: usize = 60;
+/// Widest drawing; a larger [`Style::width`] is taken as this.
+pub const MAX_WIDTH: usize = 400;
+
+/// How rungs are drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Columns, rails and rung numbers included; from [`MIN_WIDTH`] to [`MAX_WIDTH`].
+    pub width: usize,
+    /// ANSI colours.
+    pub color: bool,
+    /// Lines and contacts of plain ASCII characters. Texts of the project keep theirs.
+    pub ascii: bool,
+    /// Values last displayed beside operands (`5120<`).
+    pub values: bool,
+    /// Symbols and descriptions above instructions.
+    pub descriptions: bool,
+    /// Rung comments and page titles.
+    pub comments: bool,
+    /// Bits below contacts and coils, elements above, as on paper; `false`: the whole address above.
+    pub split_bits: bool,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Style {
+            width: 100,
+            color: false,
+            ascii: false,
+            values: true,
+            descriptions: true,
+            comments: true,
+            split_bits: true,
+        }
+    }
+}
+
+impl Style {
+    fn columns(&self) -> usize {
+        self.width.clamp(MIN_WIDTH, MAX_WIDTH)
+    }
+}
+
+/// A rung with its number, comment and title, ended by a line that only has the power rails.
+/// `index` counts from 0; beyond the end of the file the text is empty.
+///
+/// `documentation` may be that of another image: the online image has none of its own.
+pub fn rung(image: &Image, file: &ProgramFile, index: usize, documentation: &Documentation, style: &Style) -> String {
+    let mut text = String::new();
+    let scene = scene(image, file, index, documentation, style);
+    paint::paint(&scene, style.color, style.ascii, &mut text);
+    text
+}
+
+/// The items of a rung and their places, see [`rung`]. Colour and ASCII do not matter here.
+pub fn scene(
+    image: &Image,
+    file: &ProgramFile,
+    index: usize,
+    documentation: &Documentation,
+    style: &Style,
+) -> scene::Scene {
+    let source = face::Source { image, file: file.number, documentation, style };
+    file.rungs.get(index).map_or_else(scene::Scene::default, |rung| rung::compose(&source, file, index, rung))
+}
+
+/// The head of a program file, as at the top of printed pages:
+/// `LAD 2 - MAIN --- Total Rungs in File = 10`, and a line below it.
+pub fn header(file: &ProgramFile, style: &Style) -> String {
+    rung::header(file, style)
+}
+
+/// Writes the head of a program file and its rungs, or those of `rungs` (from 0), one after the
+/// other, so that no more than one rung is in memory.
+///
+/// # Errors
+/// What writing to `out` gives.
+pub fn program_file(
+    out: &mut dyn io::Write,
+    image: &Image,
+    file: &ProgramFile,
+    rungs: Option<RangeInclusive<usize>>,
+    documentation: &Documentation,
+    style: &Style,
+) -> io::Result<()> {
+    out.write_all(header(file, style).as_bytes())?;
+    let all = 0..=file.rungs.len().saturating_sub(1);
+    let (first, last) = rungs.unwrap_or(all).into_inner();
+    for index in (first..file.rungs.len()).take_while(|index| *index <= last) {
+        out.write_all(rung(image, file, index, documentation, style).as_bytes())?;
+    }
+    Ok(())
+}

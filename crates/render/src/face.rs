@@ -1,0 +1,340 @@
+//! What is written at an instruction: its drawing, operands, values, symbol and description.
+
+use instr::{Drawing, Form, Kind, Position, Stored};
+use ladder::{Address, Documentation, FileType, Image, Instruction, Operand, Target, Value};
+
+use crate::Style;
+use crate::scene::Role;
+use crate::text::clean;
+
+/// An instruction as texts, before it has a size.
+#[derive(Debug)]
+pub(crate) struct Face {
+    /// Description lines, then the symbol: stand above.
+    pub labels: Vec<(Role, String)>,
+    /// The drawing.
+    pub body: Body,
+    /// Stands at the right power rail.
+    pub output: bool,
+}
+
+/// The drawing of an instruction.
+#[derive(Debug)]
+pub(crate) enum Body {
+    /// Contact, coil or letters in brackets.
+    Symbol {
+        /// The sign on the wire.
+        sign: Sign,
+        /// Address, above the wire.
+        above: String,
+        /// Bit, module and remarks, below the wire.
+        below: Vec<(Role, String)>,
+    },
+    /// Frame with rows.
+    Box {
+        /// In the upper side of the frame.
+        name: String,
+        /// First row.
+        title: String,
+        /// The other rows.
+        rows: Vec<Row>,
+        /// Status flags at the right side.
+        flags: &'static [&'static str],
+    },
+}
+
+/// A sign on the wire.
+#[derive(Debug)]
+pub(crate) enum Sign {
+    Contact { closed: bool },
+    Coil(&'static str),
+    Marked(&'static str),
+}
+
+/// A row of a box.
+#[derive(Debug)]
+pub(crate) struct Row {
+    /// Name at the left side, empty in a row that only has a value.
+    pub name: String,
+    /// Text at the right side.
+    pub text: String,
+    /// What the text is.
+    pub role: Role,
+    /// `<` follows: the value comes from the data table.
+    pub live: bool,
+}
+
+/// What faces are made from.
+pub(crate) struct Source<'a> {
+    pub image: &'a Image,
+    /// Number of the program file.
+    pub file: u16,
+    pub documentation: &'a Documentation,
+    pub style: &'a Style,
+}
+
+impl Source<'_> {
+    /// The face of an instruction.
+    pub(crate) fn face(&self, instruction: &Instruction) -> Face {
+        let entry = instruction.mnemonic.name().and_then(instr::by_mnemonic);
+        let form = entry.and_then(|entry| form(entry, self.image, instruction.operands.len()));
+        let (Some(entry), Some(form)) = (entry, form) else {
+            return self.unknown(instruction);
+        };
+        let output = !matches!(form.position, Position::Input | Position::RungStart);
+        let labels = match documented(form, &instruction.operands) {
+            Some(index) => self.labels(instruction, index),
+            None => Vec::new(),
+        };
+        let sign = match form.drawing {
+            Drawing::Contact { closed } => Some(Sign::Contact { closed }),
+            Drawing::Coil(letters) => Some(Sign::Coil(letters)),
+            Drawing::Marked(letters) => Some(Sign::Marked(letters)),
+            Drawing::Box { .. } => None,
+        };
+        let body = match (sign, instruction.operands.as_slice()) {
+            (Some(sign), []) => Body::Symbol { sign, above: String::new(), below: Vec::new() },
+            (Some(sign), [operand]) => self.symbol(sign, operand),
+            _ => Body::Box {
+                name: entry.mnemonic.to_owned(),
+                title: entry.title.to_owned(),
+                rows: self.rows(instruction, form),
+                flags: match form.drawing {
+                    Drawing::Box { flags } => flags,
+                    _ => &[],
+                },
+            },
+        };
+        Face { labels, body, output }
+    }
+
+    /// An instruction that is not in the table: everything stored, nothing guessed.
+    fn unknown(&self, instruction: &Instruction) -> Face {
+        let (name, title) = match &instruction.mnemonic {
+            ladder::Mnemonic::Named(name) => (clean(name).into_owned(), "(unknown instruction)".to_owned()),
+            ladder::Mnemonic::Unknown(code) => ("?".to_owned(), format!("op 0x{code:02X} (unknown instruction)")),
+        };
+        let mut rows = Vec::new();
+        for (index, operand) in instruction.operands.iter().enumerate() {
+            rows.push(Row::operand(format!("Operand {}", index + 1), self.text(operand)));
+            self.push_displayed(&mut rows, instruction, index, false);
+        }
+        push_setup(&mut rows, instruction);
+        Face { labels: Vec::new(), body: Body::Box { name, title, rows, flags: &[] }, output: false }
+    }
+
+    /// Description and symbol of operand `index`.
+    fn labels(&self, instruction: &Instruction, index: usize) -> Vec<(Role, String)> {
+        if !self.style.descriptions {
+            return Vec::new();
+        }
+        let Some(operand) = instruction.operands.get(index) else { return Vec::new() };
+        let target = match operand {
+            Operand::Address(address) => Target::from(address),
+            Operand::ProgramFile(number) => Target::ProgramFileOperand(*number),
+            Operand::Label { number, .. } => Target::Label { file: self.file, number: *number },
+            _ => return Vec::new(),
+        };
+        let shown = self.documentation.shown(&target, instruction.mnemonic.name().unwrap_or(""));
+        let mut labels: Vec<(Role, String)> =
+            shown.description.iter().map(|line| (Role::Description, clean(line.trim_end()).into_owned())).collect();
+        let symbol = shown.symbol.or_else(|| operand.address().and_then(|a| self.indirect_symbol(a)));
+        if let Some(symbol) = symbol {
+            let mark = if operand.address().is_some_and(|a| a.indexed) { "#" } else { "" };
+            labels.push((Role::Symbol, format!("{mark}{}", clean(&symbol))));
+        }
+        labels
+    }
+
+    /// `B11:0/[OFFSET]` for `B11:0/[N17:2]`: the places the program reads, by their symbols.
+    fn indirect_symbol(&self, address: &Address) -> Option<String> {
+        let mut text = Address { indexed: false, ..address.clone() }.to_string();
+        let mut found = false;
+        for inner in address.indirections() {
+            if let Some(symbol) = self.documentation.shown(&Target::from(inner), "").symbol {
+                text = text.replacen(&format!("[{inner}]"), &format!("[{symbol}]"), 1);
+                found = true;
+            }
+        }
+        found.then_some(text)
+    }
+
+    /// An operand as a person reads it in this program file.
+    fn text(&self, operand: &Operand) -> String {
+        match operand {
+            // The stored file number of a label can be stale; a label belongs to its own file.
+            Operand::Label { number, .. } => format!("Q{}:{number}", self.file),
+            other => clean(other.to_string().trim()).into_owned(),
+        }
+    }
+
+    fn symbol(&self, sign: Sign, operand: &Operand) -> Body {
+        let text = self.text(operand);
+        let mut below = Vec::new();
+        let above = match split_bit(&text).filter(|_| self.style.split_bits) {
+            None => text,
+            Some((element, bit)) => {
+                below.push((Role::Address, bit.to_owned()));
+                let in_slot = operand.address().is_some_and(|a| is_io(a) && a.word == Some(0));
+                let element = if in_slot { element.strip_suffix(".0").unwrap_or(element) } else { element };
+                element.to_owned()
+            }
+        };
+        if let Some(address) = operand.address() {
+            below.extend(self.module(address).into_iter().map(|(role, text)| (role, clean(&text).into_owned())));
+        }
+        Body::Symbol { sign, above, below }
+    }
+
+    /// The module under an I/O bit.
+    fn module(&self, address: &Address) -> Vec<(Role, String)> {
+        let io = &self.image.io;
+        if !is_io(address) || address.element.number().is_none() || io.slots.is_empty() {
+            return Vec::new();
+        }
+        let Some(point) = io.resolve(address) else {
+            return vec![(Role::Note, "not in the I/O".to_owned())];
+        };
+        let mut lines = match &point.slot.module.catalog {
+            Some(catalog) => vec![(Role::Module, catalog.clone())],
+            None => vec![(Role::Note, "unknown module".to_owned())],
+        };
+        if !point.in_range {
+            lines.push((Role::Note, "no such point".to_owned()));
+        }
+        lines
+    }
+
+    /// The rows of a box below its title.
+    fn rows(&self, instruction: &Instruction, form: &Form) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let known = form.operands.len() == instruction.operands.len();
+        for (index, operand) in instruction.operands.iter().enumerate() {
+            let definition = form.operands.get(index).filter(|_| known);
+            let name = definition.map_or_else(|| format!("Operand {}", index + 1), |d| d.name.to_owned());
+            let text = self.text(operand);
+            match definition.map(|d| d.stored) {
+                Some(Stored::Value) if instruction.compiled => {
+                    let table = self.table_value(form, &instruction.operands, index);
+                    let stale = table.as_ref().is_some_and(|value| *value != text && !text.is_empty());
+                    let shown = table.unwrap_or_else(|| text.clone());
+                    let live = !shown.is_empty();
+                    rows.push(Row { name, text: shown, role: Role::Operand, live });
+                    if stale {
+                        rows.push(Row { name: "  last shown".into(), text, role: Role::Note, live: false });
+                    }
+                }
+                _ => rows.push(Row::operand(name, text)),
+            }
+            let valued = definition.is_some_and(|d| d.stored == Stored::SourceAndValue);
+            self.push_displayed(&mut rows, instruction, index, valued);
+        }
+        push_setup(&mut rows, instruction);
+        rows
+    }
+
+    /// The row with the value of operand `index`: what RSLogix last displayed, else for an operand
+    /// whose box has a place for one (`valued`) what the data table holds at a direct address.
+    fn push_displayed(&self, rows: &mut Vec<Row>, instruction: &Instruction, index: usize, valued: bool) {
+        if !self.style.values {
+            return;
+        }
+        let value = match instruction.displayed(index) {
+            Some(text) => clean(text.trim()).into_owned(),
+            None if !valued => return,
+            None => match instruction.operands.get(index).and_then(|operand| self.data_value(operand)) {
+                Some(text) => text,
+                None => return,
+            },
+        };
+        rows.push(Row { name: String::new(), text: value, role: Role::Value, live: instruction.compiled });
+    }
+
+    /// The value in the data table at a direct address that names one number.
+    fn data_value(&self, operand: &Operand) -> Option<String> {
+        let address = operand.address().filter(|a| a.is_direct() && a.bit.is_none())?;
+        number_text(&self.image.value_at(address)?)
+    }
+
+    /// What the data element holds that snapshot operand `index` shows: PRE and ACC of a timer or
+    /// counter, LEN and POS of a control element. Compiled code has only the element, so this is the
+    /// program; the stored text is what the box last showed.
+    fn table_value(&self, form: &Form, operands: &[Operand], index: usize) -> Option<String> {
+        let member = match form.operands.get(index)?.kind {
+            Kind::Preset => "PRE",
+            Kind::Accum => "ACC",
+            Kind::Length => "LEN",
+            Kind::Position => "POS",
+            _ => return None,
+        };
+        let before = form.operands.get(..index)?;
+        let element = before.iter().rposition(|o| matches!(o.kind, Kind::Timer | Kind::Counter | Kind::Control))?;
+        let address = operands.get(element)?.address().filter(|a| a.is_direct() && a.word.is_none())?;
+        let member = ladder::member_by_name(address.file_type, member)?;
+        number_text(&self.image.value_at(&address.clone().with_word(member.word))?)
+    }
+}
+
+impl Row {
+    fn operand(name: String, text: String) -> Row {
+        Row { name, text, role: Role::Operand, live: false }
+    }
+}
+
+/// Settings behind the set-up screen of a MSG, which paper does not show in the box.
+fn push_setup(rows: &mut Vec<Row>, instruction: &Instruction) {
+    for (name, value) in instruction.message.iter().flat_map(|setup| &setup.settings) {
+        rows.push(Row::operand(clean(name).into_owned(), clean(value).into_owned()));
+    }
+}
+
+fn number_text(value: &Value) -> Option<String> {
+    match value {
+        Value::Word(word) => Some(word.to_string()),
+        Value::Long(long) => Some(long.to_string()),
+        Value::Float(float) => Some(ladder::format_float(*float)),
+        _ => None,
+    }
+}
+
+fn is_io(address: &Address) -> bool {
+    matches!(address.file_type, FileType::I | FileType::O)
+}
+
+/// Element and bit of an address text, cut at the last slash outside brackets.
+fn split_bit(text: &str) -> Option<(&str, &str)> {
+    let mut depth = 0_usize;
+    for (at, byte) in text.bytes().enumerate().rev() {
+        match byte {
+            b']' => depth += 1,
+            b'[' => depth = depth.saturating_sub(1),
+            b'/' if depth == 0 && at > 0 && at + 1 < text.len() => return Some((&text[..at], &text[at + 1..])),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The form with this many operands, of the image's family where it has one.
+fn form(entry: &'static instr::Instruction, image: &Image, operands: usize) -> Option<&'static Form> {
+    let fits = |form: &&'static Form| form.operands.len() == operands;
+    let of_family = entry.forms_for(image.family()).find(fits);
+    let any = || entry.forms.iter().find(fits);
+    of_family.or_else(any).or(entry.forms.first())
+}
+
+/// The operand whose symbol and description stand above: what an output writes, what an input tests.
+fn documented(form: &Form, operands: &[Operand]) -> Option<usize> {
+    let documentable = |index: &usize| {
+        matches!(operands.get(*index), Some(Operand::Address(_) | Operand::ProgramFile(_) | Operand::Label { .. }))
+    };
+    let of = |wanted: &dyn Fn(&instr::Operand) -> bool| form.operands.iter().position(wanted);
+    let control = of(&|o| matches!(o.kind, Kind::Control));
+    let written = of(&|o| o.role.writes());
+    let tested = form.code_order.first().copied();
+    let first = match form.position {
+        Position::Output => control.or(written),
+        _ => tested,
+    };
+    first.filter(documentable).or_else(|| (0..operands.len()).find(documentable))
+}
