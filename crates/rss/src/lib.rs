@@ -28,6 +28,7 @@ pub mod stream;
 pub mod summary;
 pub mod tables;
 pub mod text;
+pub mod verify;
 
 pub use archive::{Parsed, Record, parse, serialize};
 pub use container::Container;

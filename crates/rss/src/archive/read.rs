@@ -145,13 +145,16 @@ impl<'a> Reader<'a> {
     #[inline]
     pub fn enter(&mut self, name: &'static str, number: usize) -> Result<()> {
         if self.path.len() >= MAX_DEPTH {
-            return Err(
-                self.fault(format_args!("records nested at most {MAX_DEPTH} deep"), format_args!("one more {name}"))
-            );
+            return Err(self.too_deep(name));
         }
         let number = u32::try_from(number).unwrap_or(UNNUMBERED);
         self.path.push(Frame { name, number });
         Ok(())
+    }
+
+    #[cold]
+    fn too_deep(&self, name: &'static str) -> Error {
+        self.fault(format_args!("records nested at most {MAX_DEPTH} deep"), format_args!("one more {name}"))
     }
 
     /// Enters a record without a number: `force table`.
@@ -329,7 +332,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If fewer are left.
-    #[inline]
+    #[inline(always)]
     pub fn bytes(&mut self, what: &'static str, n: usize) -> Result<&'a [u8]> {
         let end = self.pos.checked_add(n);
         match end.and_then(|end| self.bytes.get(self.pos..end)) {
@@ -356,7 +359,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If fewer are left.
-    #[inline]
+    #[inline(always)]
     pub fn array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N]> {
         match self.bytes.get(self.pos..).and_then(|rest| rest.first_chunk::<N>()) {
             Some(array) => {
@@ -371,7 +374,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// At the end of the payload.
-    #[inline]
+    #[inline(always)]
     pub fn u8(&mut self, what: &'static str) -> Result<u8> {
         Ok(u8::from_le_bytes(self.array(what)?))
     }
@@ -380,7 +383,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If fewer than 2 bytes are left.
-    #[inline]
+    #[inline(always)]
     pub fn u16(&mut self, what: &'static str) -> Result<u16> {
         Ok(u16::from_le_bytes(self.array(what)?))
     }
@@ -389,7 +392,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If fewer than 4 bytes are left.
-    #[inline]
+    #[inline(always)]
     pub fn u32(&mut self, what: &'static str) -> Result<u32> {
         Ok(u32::from_le_bytes(self.array(what)?))
     }
@@ -399,14 +402,22 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If that many cannot follow.
-    #[inline]
+    #[inline(always)]
     pub fn check_room(&self, what: &'static str, n: usize, min_bytes: usize) -> Result<usize> {
         if n.checked_mul(min_bytes).is_none_or(|need| need > self.remaining()) {
-            return Err(
-                self.fault(format_args!("{what} that fits the {} bytes left", self.remaining()), format_args!("{n}"))
-            );
+            return Err(self.no_room(what, n));
         }
         Ok(n)
+    }
+
+    #[cold]
+    fn no_room(&self, what: &'static str, n: usize) -> Error {
+        self.fault(format_args!("{what} that fits the {} bytes left", self.remaining()), n)
+    }
+
+    #[cold]
+    fn too_many(&self, what: &'static str, limit: usize) -> Error {
+        self.fault(format_args!("at most {limit} {what}"), "one more")
     }
 
     /// An MFC count (`ReadCount`): u16, or `FFFF` and a u32. Checked against
@@ -414,7 +425,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// If that many items cannot follow.
-    #[inline]
+    #[inline(always)]
     pub fn count(&mut self, what: &'static str, min_bytes: usize) -> Result<usize> {
         let at = self.pos;
         let n = match self.u16(what)? {
@@ -459,10 +470,10 @@ impl<'a> Reader<'a> {
     /// # Errors
     /// If the text is longer than what is left, or the stream holds more than
     /// [`MAX_STRINGS`] strings.
-    #[inline]
+    #[inline(always)]
     pub fn string(&mut self, what: &'static str) -> Result<Text<'a>> {
         if self.strings >= MAX_STRINGS {
-            return Err(self.fault(format_args!("at most {MAX_STRINGS} strings"), "one more"));
+            return Err(self.too_many("strings", MAX_STRINGS));
         }
         self.strings += 1;
         match self.u8(what)? {
@@ -471,6 +482,29 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// [`Reader::string`] `count` times, onto a list.
+    ///
+    /// # Errors
+    /// As [`Reader::string`].
+    #[inline]
+    pub fn strings(&mut self, what: &'static str, count: usize, out: &mut Vec<Text<'a>>) -> Result<()> {
+        // Each takes a byte at least, but most are short lists: room for a hostile count is not made.
+        out.reserve_exact(count.min(16));
+        for _ in 0..count {
+            match self.peek().split_first() {
+                // The common case, built where it goes to: a copy of each costs more than reading it.
+                Some((&n, rest)) if n < 0xFF && usize::from(n) <= rest.len() && self.strings < MAX_STRINGS => {
+                    self.strings += 1;
+                    self.pos += 1 + usize::from(n);
+                    out.push(Text::from_bytes(rest.get(..usize::from(n)).unwrap_or_default()));
+                }
+                _ => out.push(self.string(what)?),
+            }
+        }
+        Ok(())
+    }
+
+    #[cold]
     fn long_string(&mut self, what: &'static str) -> Result<Text<'a>> {
         let mut wide = false;
         let mut first = self.u16(what)?;
@@ -505,7 +539,7 @@ impl<'a> Reader<'a> {
     #[inline]
     fn check_objects(&self) -> Result<()> {
         if self.map.len() + self.loose >= MAX_OBJECTS {
-            return Err(self.fault(format_args!("at most {MAX_OBJECTS} classes and objects"), "one more"));
+            return Err(self.too_many("classes and objects", MAX_OBJECTS));
         }
         Ok(())
     }
@@ -590,6 +624,7 @@ impl<'a> Reader<'a> {
         }
     }
 
+    #[cold]
     fn known_object(&mut self, at: usize, number: u32) -> Result<Object<'a>> {
         match usize::try_from(number).ok().and_then(|i| self.map.get(i)) {
             Some(Entry::Object) => {
@@ -605,6 +640,7 @@ impl<'a> Reader<'a> {
         }
     }
 
+    #[cold]
     fn new_class(&mut self) -> Result<Object<'a>> {
         let schema = self.u16("a class schema")?;
         let length = self.u16("the length of a class name")?;
@@ -631,6 +667,25 @@ impl<'a> Reader<'a> {
         Ok(Object::New { class, number: self.number(Entry::Object)? })
     }
 
+    /// Takes the tag of an object of one class if it is what follows and the
+    /// class is known already; otherwise moves nothing. The short cut through
+    /// [`Reader::object`] for lists that are mostly of one class.
+    #[inline]
+    pub fn try_object(&mut self, class: &'static str) -> bool {
+        let Some(&[low, high]) = self.peek().first_chunk::<2>() else { return false };
+        let number = usize::from(u16::from_le_bytes([low, high & 0x7F]));
+        if high & 0x80 == 0 || self.map.len() + self.loose >= MAX_OBJECTS {
+            return false;
+        }
+        let Some(Entry::Class(slot)) = self.map.get(number) else { return false };
+        if self.classes.get(*slot as usize).is_none_or(|c| c.name != class.as_bytes()) {
+            return false;
+        }
+        self.map.push(Entry::Object);
+        self.pos += 2;
+        true
+    }
+
     /// An object of one class; its body follows. Returns its archive number.
     ///
     /// # Errors
@@ -638,6 +693,9 @@ impl<'a> Reader<'a> {
     #[inline]
     pub fn expect_object(&mut self, class: &'static str) -> Result<u32> {
         let at = self.pos;
+        if self.try_object(class) {
+            return Ok(u32::try_from(self.map.len() - 1).unwrap_or(u32::MAX));
+        }
         match self.object()? {
             Object::New { class: c, number } if c.name == class.as_bytes() => Ok(number),
             other => Err(self.unexpected(at, class, &other)),

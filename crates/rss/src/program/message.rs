@@ -113,7 +113,8 @@ impl<'a> MessageSetup<'a> {
     /// Reads the record if it is there. Whether it is, and whether its CIP tail
     /// is, follows from the bytes: another object must come next, because the
     /// end mark of its leg follows every instruction.
-    pub(super) fn read_optional(r: &mut Reader<'a>, presence: Presence, compiled: bool) -> Result<Option<Self>> {
+    #[cold]
+    pub(super) fn read_optional(r: &mut Reader<'a>, presence: Presence, compiled: bool) -> Result<Option<Box<Self>>> {
         let expected = presence != Presence::Possible && compiled;
         if r.at_object() {
             if expected {
@@ -136,7 +137,7 @@ impl<'a> MessageSetup<'a> {
                         format_args!("one {kind}, of an instruction {code}"),
                     )?;
                 }
-                Ok(Some(setup))
+                Ok(Some(Box::new(setup)))
             }
             Err(e) if expected => Err(e),
             Err(_) => {

@@ -46,24 +46,27 @@ fn lad_file<'a>(out: &mut LadFile<'a>, index: usize, r: &mut Reader<'a>) -> Resu
     r.mark();
     for index in 0..count {
         r.enter("rung", index)?;
-        let rung = rung(r)?;
-        out.rungs.push(rung);
+        out.rungs.push(BLANK_RUNG);
+        let read = out.rungs.last_mut().map_or(Ok(()), |out| rung(out, r));
+        if read.is_err() {
+            // Only complete rungs stay.
+            out.rungs.pop();
+        }
+        read?;
         r.leave();
         r.mark();
     }
     Ok(())
 }
 
-fn rung<'a>(r: &mut Reader<'a>) -> Result<Rung<'a>> {
+fn rung<'a>(out: &mut Rung<'a>, r: &mut Reader<'a>) -> Result<()> {
     r.expect_object("CRung")?;
     r.expect_object("CBranchLeg")?;
-    let leg = Leg { items: items(r, &RUNG)? };
-    Ok(Rung {
-        leg,
-        unknown_0: r.u32("the first field after the leg")?,
-        edited: r.u32("the edit mark")?,
-        comment_id: r.u32("a comment id")?,
-    })
+    items(&mut out.leg.items, r, &RUNG)?;
+    out.unknown_0 = r.u32("the first field after the leg")?;
+    out.edited = r.u32("the edit mark")?;
+    out.comment_id = r.u32("a comment id")?;
+    Ok(())
 }
 
 /// What a list of items has to look like.
@@ -79,78 +82,110 @@ const RUNG: Shape = Shape { start: mark::RUNG_START, end: mark::RUNG_END, is_bra
 const BRANCH: Shape = Shape { start: mark::BRANCH_START, end: mark::BRANCH_END, is_branch: true, name: "branch" };
 const LEG: Shape = Shape { start: mark::LEG_START, end: mark::LEG_END, is_branch: false, name: "leg" };
 
-fn items<'a>(r: &mut Reader<'a>, shape: &Shape) -> Result<Vec<Item<'a>>> {
+fn items<'a>(items: &mut Vec<Item<'a>>, r: &mut Reader<'a>, shape: &Shape) -> Result<()> {
     let at = r.offset();
     let count = r.count("a number of instructions", MIN_ITEM)?;
     // A null takes two bytes but an `Item` far more: grow with what is really there.
-    let mut items = Vec::with_capacity(count.min(64));
+    items.reserve_exact(count.min(64));
     for index in 0..count {
-        let item = item(r, index)?;
-        items.push(item);
+        if r.try_object("CIns") {
+            fill(items, index, r)?;
+            continue;
+        }
+        if r.try_object("CBranchLeg") {
+            leg(items, r, index)?;
+        } else if r.try_object("CBranch") {
+            branch(items, r, index)?;
+        } else {
+            let at = r.offset();
+            match r.object()? {
+                Object::New { class, .. } if class.name == b"CIns" => fill(items, index, r)?,
+                Object::New { class, .. } if class.name == b"CBranchLeg" => leg(items, r, index)?,
+                Object::New { class, .. } if class.name == b"CBranch" => branch(items, r, index)?,
+                Object::Null => items.push(Item::Null),
+                Object::Reference { number } => items.push(Item::Reference(number)),
+                other => return Err(r.unexpected(at, "CIns, CBranch or CBranchLeg", &other)),
+            }
+        }
     }
-    if !fits(&items, shape) {
+    if !fits(items, shape) {
         r.deviation_at(
             at,
             format_args!("a {} between its marks {} and {}", shape.name, shape.start, shape.end),
-            describe(&items),
+            describe(items),
         )?;
     }
-    Ok(items)
+    Ok(())
 }
 
-fn item<'a>(r: &mut Reader<'a>, index: usize) -> Result<Item<'a>> {
-    let at = r.offset();
-    match r.object()? {
-        Object::New { class, .. } => match class.name {
-            b"CIns" => {
-                r.enter("instruction", index)?;
-                let instruction = instruction(r)?;
-                r.leave();
-                Ok(Item::Instruction(instruction))
-            }
-            b"CBranch" => {
-                r.enter("branch", index)?;
-                let items = items(r, &BRANCH)?;
-                r.leave();
-                Ok(Item::Branch(Branch { items }))
-            }
-            b"CBranchLeg" => {
-                r.enter("leg", index)?;
-                let items = items(r, &LEG)?;
-                r.leave();
-                Ok(Item::Leg(Leg { items }))
-            }
-            _ => Err(r.unexpected(at, "CIns, CBranch or CBranchLeg", &Object::New { class, number: 0 })),
-        },
-        Object::Null => Ok(Item::Null),
-        Object::Reference { number } => Ok(Item::Reference(number)),
+/// Appends an instruction, filled where it stays: of all the reading, moving
+/// instructions about would cost the most.
+#[inline]
+fn fill<'a>(items: &mut Vec<Item<'a>>, index: usize, r: &mut Reader<'a>) -> Result<()> {
+    r.enter("instruction", index)?;
+    items.push(BLANK_INSTRUCTION);
+    if let Some(Item::Instruction(out)) = items.last_mut() {
+        instruction(out, r)?;
     }
+    r.leave();
+    Ok(())
 }
 
-fn instruction<'a>(r: &mut Reader<'a>) -> Result<Instruction<'a>> {
+fn branch<'a>(out: &mut Vec<Item<'a>>, r: &mut Reader<'a>, index: usize) -> Result<()> {
+    r.enter("branch", index)?;
+    out.push(BLANK_BRANCH);
+    if let Some(Item::Branch(branch)) = out.last_mut() {
+        items(&mut branch.items, r, &BRANCH)?;
+    }
+    r.leave();
+    Ok(())
+}
+
+fn leg<'a>(out: &mut Vec<Item<'a>>, r: &mut Reader<'a>, index: usize) -> Result<()> {
+    r.enter("leg", index)?;
+    out.push(BLANK_LEG);
+    if let Some(Item::Leg(leg)) = out.last_mut() {
+        items(&mut leg.items, r, &LEG)?;
+    }
+    r.leave();
+    Ok(())
+}
+
+// Appended and then filled. Constants, so that appending is one plain copy.
+const BLANK_RUNG: Rung<'static> = Rung { leg: Leg { items: Vec::new() }, unknown_0: 0, edited: 0, comment_id: 0 };
+const BLANK_LEG: Item<'static> = Item::Leg(Leg { items: Vec::new() });
+const BLANK_BRANCH: Item<'static> = Item::Branch(Branch { items: Vec::new() });
+const BLANK_INSTRUCTION: Item<'static> = Item::Instruction(Instruction {
+    operands: Vec::new(),
+    has_code: 0,
+    opcode: 0,
+    x: 0,
+    y: 0,
+    code: Cow::Borrowed(&[]),
+    message: None,
+});
+
+#[inline]
+fn instruction<'a>(out: &mut Instruction<'a>, r: &mut Reader<'a>) -> Result<()> {
     let count = r.count("a number of operands", 1)?;
-    let mut operands = Vec::with_capacity(count.min(16));
-    for _ in 0..count {
-        operands.push(r.string("an operand")?);
+    if count > 0 {
+        r.strings("an operand", count, &mut out.operands)?;
     }
-    let mut out = Instruction {
-        operands,
-        has_code: r.u16("the code mark")?,
-        opcode: r.u16("an opcode")?,
-        x: r.u16("x")?,
-        y: r.u16("y")?,
-        ..Instruction::default()
-    };
+    let at = r.offset();
+    let [h0, h1, o0, o1, x0, x1, y0, y1] = r.array("code mark, opcode, x and y")?;
+    out.has_code = u16::from_le_bytes([h0, h1]);
+    out.opcode = u16::from_le_bytes([o0, o1]);
+    out.x = u16::from_le_bytes([x0, x1]);
+    out.y = u16::from_le_bytes([y0, y1]);
     if out.has_code > 1 {
-        r.deviation_at(r.offset() - 8, "code mark 0 or 1", out.has_code)?;
+        r.deviation_at(at, "code mark 0 or 1", out.has_code)?;
     }
     if out.has_code != 0 {
         let length = r.count("a code length", 1)?;
-        let at = r.offset();
         let code = r.bytes("compiled code", length)?;
         if code.first().map(|&b| u16::from(b)) != Some(out.opcode) {
             r.deviation_at(
-                at,
+                r.offset() - length,
                 format_args!("code that begins with opcode {:#04x}", out.opcode),
                 format_args!("{:02x?}", code.get(..code.len().min(8)).unwrap_or_default()),
             )?;
@@ -158,9 +193,9 @@ fn instruction<'a>(r: &mut Reader<'a>) -> Result<Instruction<'a>> {
         out.code = Cow::Borrowed(code);
     }
     if let Some(presence) = MessageSetup::presence(out.opcode) {
-        out.message = MessageSetup::read_optional(r, presence, out.has_code != 0)?.map(Box::new);
+        out.message = MessageSetup::read_optional(r, presence, out.has_code != 0)?;
     }
-    Ok(out)
+    Ok(())
 }
 
 fn fits(items: &[Item<'_>], shape: &Shape) -> bool {
