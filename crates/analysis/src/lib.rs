@@ -1,1 +1,30 @@
-//! Cross reference and the timer and counter report.
+//! What a program does with its data: cross reference, timers and counters, calls, documentation.
+//!
+//! Everything here is computed from a [`ladder::Image`] and the instruction table of `instr`; nothing
+//! reads a file or a clock. Statements are about the program alone: an operator terminal, another
+//! controller or a programming terminal can read and write the data table too, and none of that
+//! stands in a project.
+//!
+//! * [`CrossReference`]: who reads and who writes an address, whatever way it is reached.
+//! * [`TimerReport`]: every timer and counter with its parameters, its seconds and its rungs.
+//! * [`CallGraph`]: which program file runs because of which rung or interrupt.
+//! * [`Coverage`]: how much of the program is documented.
+
+mod calls;
+mod coverage;
+mod location;
+mod space;
+mod timers;
+mod xref;
+
+pub use calls::{Call, CallGraph, CalledFile, Entry, EntryKind, Label, Target};
+pub use coverage::Coverage;
+pub use location::{Location, instructions};
+pub use timers::{
+    DataValues, ElementKind, InstructionValues, Reference, TimerCounter, TimerFinding, TimerFindingKind, TimerReport,
+    Usage,
+};
+pub use xref::{
+    Access, Certainty, CrossReference, Finding, FindingKind, Found, Group, Level, Note, Reason, Through, Unresolved,
+    UnresolvedKind,
+};

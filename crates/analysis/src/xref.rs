@@ -1,0 +1,451 @@
+//! Cross reference: every access to the data table, found by any address it overlaps.
+//!
+//! An address is touched by more than the instructions that name it: a bit by a move of its word, a
+//! copy over its file, a shift through it, a message; a member of a timer by the timer instruction.
+//! [`CrossReference::of`] answers with all of them. Where brackets or S:24 choose the place while the
+//! program runs, the access *may* touch the address, and says so.
+//!
+//! What it does not know stands in [`CrossReference::notes`] and [`CrossReference::unresolved`]; who
+//! writes from outside the program (terminals, other controllers) does not stand in a project at all.
+
+mod collect;
+mod findings;
+mod index;
+mod message;
+mod query;
+mod reach;
+mod symbols;
+
+use std::cmp::Reverse;
+
+use instr::{Kind, Role};
+use ladder::{Address, Documentation, Family, FileType, Image, Mnemonic, Operand, Value};
+
+use crate::location::Location;
+use crate::space::Area;
+use collect::{Collected, Use, collect};
+use index::{Index, Span};
+
+pub use findings::{Finding, FindingKind, Reason};
+pub use query::Found;
+
+/// Who reads and writes what, for one image.
+pub struct CrossReference<'a> {
+    image: &'a Image,
+    documentation: &'a Documentation,
+    data: Collected<'a>,
+    index: Index,
+}
+
+/// An access to an address, seen from that address.
+#[derive(Clone, Debug)]
+pub struct Access<'x> {
+    /// Where.
+    pub location: Location,
+    /// By which instruction.
+    pub mnemonic: &'x Mnemonic,
+    /// Through which operand, by its name in the box; empty when no operand names the data (flags) or
+    /// the instruction is not known.
+    pub operand: &'static str,
+    /// That operand as written; for flags and the like the address itself.
+    pub address: &'x Address,
+    /// The symbol that stood in its place, in rungs that were never verified.
+    pub symbol: Option<&'x str>,
+    /// What happens to the data asked for.
+    pub role: Role,
+    /// Whether it happens.
+    pub certainty: Certainty,
+    /// How much of the data table the access takes at once.
+    pub level: Level,
+    /// In which way the operand leads there.
+    pub through: Through,
+    /// The data touched, as addresses: `N7:10..N7:14`, `T4:*.ACC` for that member of any element,
+    /// `N7:10..` for an end not known. Several stretches are separated by a comma and a space.
+    pub touched: String,
+}
+
+/// Whether an access happens when its instruction does its work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Certainty {
+    /// It does.
+    Definite,
+    /// It can: the place is decided at run time, or by a setting that is not known.
+    May,
+}
+
+impl Certainty {
+    /// `definite` or `may`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Certainty::Definite => "definite",
+            Certainty::May => "may",
+        }
+    }
+}
+
+/// How much one access takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Level {
+    /// One bit.
+    Bit,
+    /// Some bits of a word, through a mask.
+    Bits,
+    /// A word, long word, float or word member.
+    Word,
+    /// A whole structured element: timer, string, message.
+    Element,
+    /// Several words or bits in a row, from a file operand.
+    Range,
+    /// Any place of a file, or from one place to its end.
+    File,
+    /// Any file of the type.
+    AnyFile,
+}
+
+impl Level {
+    /// The word in outputs: `bit`, `bits`, `word`, `element`, `range`, `file`, `any file`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Level::Bit => "bit",
+            Level::Bits => "bits",
+            Level::Word => "word",
+            Level::Element => "element",
+            Level::Range => "range",
+            Level::File => "file",
+            Level::AnyFile => "any file",
+        }
+    }
+}
+
+/// In which way an instruction reaches data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Through {
+    /// The operand names it, or an element or file it lies in.
+    Operand,
+    /// Nothing in the box names it: flags, math register, a function file.
+    Implied,
+    /// It stands in the brackets of an operand.
+    Pointer,
+    /// S:24, read because an operand is written with `#`.
+    IndexRegister,
+    /// A message moves it, in the background and not when the rung is scanned.
+    Message,
+}
+
+impl Through {
+    /// The word in outputs.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Through::Operand => "operand",
+            Through::Implied => "implied",
+            Through::Pointer => "pointer",
+            Through::IndexRegister => "index register",
+            Through::Message => "message",
+        }
+    }
+}
+
+/// An operand or instruction whose data cannot be told.
+#[derive(Clone, Debug)]
+pub struct Unresolved<'a> {
+    /// Where.
+    pub location: Location,
+    /// The instruction.
+    pub mnemonic: &'a Mnemonic,
+    /// Name of the operand, empty when the instruction as a whole is meant.
+    pub operand: &'static str,
+    /// What stands there.
+    pub text: String,
+    /// Why it says nothing.
+    pub kind: UnresolvedKind,
+}
+
+/// Why an operand or instruction says nothing about data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum UnresolvedKind {
+    /// A symbol without an address in the documentation.
+    Symbol,
+    /// No operand entered yet.
+    NotEntered,
+    /// A text of no known form.
+    Operand,
+    /// An instruction that is not in the table. Its addresses count as perhaps read and written.
+    Instruction,
+    /// A known instruction with a number of operands that no form of it has; treated the same.
+    OperandCount,
+}
+
+impl UnresolvedKind {
+    /// The reason in words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            UnresolvedKind::Symbol => "symbol without an address",
+            UnresolvedKind::NotEntered => "operand not entered",
+            UnresolvedKind::Operand => "operand not understood",
+            UnresolvedKind::Instruction => "unknown instruction",
+            UnresolvedKind::OperandCount => "unknown number of operands",
+        }
+    }
+}
+
+/// A limit of what this cross reference can say about the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Note {
+    /// S:2/3 is set: an indexed address can leave its file, and is listed within it.
+    IndexLeavesFiles,
+    /// Direction or size of this message is not known; it is listed as far as it could reach.
+    MessageArea(Location),
+    /// The addresses of this recipe stand in the controller's configuration, which is not read.
+    RecipeAddresses(Location),
+}
+
+impl Note {
+    /// The note in words, without the place.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Note::IndexLeavesFiles => "S:2/3 is set: indexed addresses can leave their file; they are listed within it",
+            Note::MessageArea(_) => "direction or size of the message is not known; listed as far as it could reach",
+            Note::RecipeAddresses(_) => "the addresses of the recipe are not known",
+        }
+    }
+
+    /// The instruction it is about.
+    pub fn location(self) -> Option<Location> {
+        match self {
+            Note::IndexLeavesFiles => None,
+            Note::MessageArea(location) | Note::RecipeAddresses(location) => Some(location),
+        }
+    }
+}
+
+/// All accesses to one address the program names.
+#[derive(Clone, Debug)]
+pub struct Group<'x> {
+    /// The address. One with brackets or `#` lists only the accesses written with it.
+    pub address: Address,
+    /// Definite accesses first, then the others, each in program order.
+    pub accesses: Vec<Access<'x>>,
+}
+
+impl<'a> CrossReference<'a> {
+    /// Walks through all ladder files of an image. The documentation resolves symbols in rungs that
+    /// were never verified; give the main image's for an online image, which has none of its own.
+    pub fn build(image: &'a Image, documentation: &'a Documentation) -> CrossReference<'a> {
+        let mut data = collect(image, documentation);
+        let mut index = Index::new(&data.spans, &data.spaces);
+        widen_written_lengths(&data, &mut index);
+        if index_can_leave_files(image, &data) {
+            data.notes.push(Note::IndexLeavesFiles);
+        }
+        CrossReference { image, documentation, data, index }
+    }
+
+    /// Every access that touches some of what an address names. `#` before the address is not looked
+    /// at; of an address with brackets only the accesses written exactly so.
+    pub fn of(&self, address: &Address) -> Vec<Access<'_>> {
+        if address.indirections().next().is_some() {
+            return self.written_as(address);
+        }
+        match self.data.spaces.find_place(address) {
+            Some(placed) => self.accesses(placed.area),
+            // No instruction leads into that file.
+            None => Vec::new(),
+        }
+    }
+
+    /// Every address the program names with its accesses, files and addresses in ascending order;
+    /// in each file the addresses that are decided at run time come last.
+    pub fn all(&self) -> Vec<Group<'_>> {
+        let mut groups: Vec<(GroupKey, Group<'_>)> = Vec::new();
+        for named in &self.data.named {
+            let key = group_key(&named.address, Some(named.area));
+            let accesses = self.accesses(named.area);
+            groups.push((key, Group { address: named.address.clone().into_owned(), accesses }));
+        }
+        let mut computed: Vec<&Address> = self.computed_addresses();
+        computed.sort_by_key(|address| address.to_string());
+        computed.dedup();
+        for address in computed {
+            let key = group_key(address, None);
+            groups.push((key, Group { address: address.clone(), accesses: self.written_as(address) }));
+        }
+        groups.sort_by(|a, b| a.0.cmp(&b.0));
+        groups.into_iter().map(|(_, group)| group).collect()
+    }
+
+    /// Addresses that operands name, ascending, without those that are decided at run time.
+    pub fn named(&self) -> Vec<&Address> {
+        let mut all: Vec<_> =
+            self.data.named.iter().map(|n| (group_key(&n.address, Some(n.area)), &*n.address)).collect();
+        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.into_iter().map(|(_, address)| address).collect()
+    }
+
+    /// Operands and instructions about which nothing can be said.
+    pub fn unresolved(&self) -> &[Unresolved<'a>] {
+        &self.data.unresolved
+    }
+
+    /// Limits of this cross reference.
+    pub fn notes(&self) -> &[Note] {
+        &self.data.notes
+    }
+
+    /// The value stored at an address.
+    pub fn value(&self, address: &Address) -> Option<Value> {
+        self.image.value_at(address)
+    }
+
+    /// The documentation it resolves symbols with.
+    pub fn documentation(&self) -> &'a Documentation {
+        self.documentation
+    }
+
+    /// The address an operand means, a symbol resolved.
+    pub fn resolve(&self, operand: &Operand) -> Option<Address> {
+        self.data.symbols.address(operand)
+    }
+
+    fn computed_addresses(&self) -> Vec<&Address> {
+        self.data.computed.iter().filter_map(|by| self.data.uses.get(*by)).map(|it| &*it.address).collect()
+    }
+
+    fn written_as(&self, address: &Address) -> Vec<Access<'_>> {
+        let same = |it: &Use<'_>| *it.address == *address;
+        let mut spans: Vec<Span> =
+            self.data.spans.iter().filter(|span| self.data.uses.get(span.by).is_some_and(same)).copied().collect();
+        self.to_accesses(&mut spans)
+    }
+
+    fn accesses(&self, area: Area) -> Vec<Access<'_>> {
+        let mut spans = self.overlapping(area);
+        self.to_accesses(&mut spans)
+    }
+
+    pub(crate) fn overlapping(&self, area: Area) -> Vec<Span> {
+        let mut spans = Vec::new();
+        self.index.overlapping(&self.data.spaces, area, |span| spans.push(*span));
+        spans
+    }
+
+    pub(crate) fn place(&self, address: &Address) -> Option<Area> {
+        self.data.spaces.find_place(address).map(|placed| placed.area)
+    }
+
+    pub(crate) fn use_of(&self, span: &Span) -> Option<&Use<'a>> {
+        self.data.uses.get(span.by)
+    }
+
+    /// One access per operand, its stretches joined.
+    fn to_accesses(&self, spans: &mut [Span]) -> Vec<Access<'_>> {
+        spans.sort_by_key(|span| (span.by, span.area.first));
+        let mut all: Vec<Access<'_>> = spans
+            .chunk_by(|a, b| a.by == b.by)
+            .filter_map(|spans| {
+                let it = self.data.uses.get(spans.first()?.by)?;
+                let texts: Vec<String> = spans.iter().map(|span| self.data.spaces.text(span.area)).collect();
+                Some(Access {
+                    location: it.location,
+                    mnemonic: it.mnemonic,
+                    operand: it.operand,
+                    address: &it.address,
+                    symbol: it.symbol,
+                    role: joined_role(spans.iter().map(|span| span.role)),
+                    certainty: certainty(spans.iter().any(|span| span.definite)),
+                    level: spans.iter().map(|span| span.level).max()?,
+                    through: it.through,
+                    touched: texts.join(", "),
+                })
+            })
+            .collect();
+        all.sort_by_key(|access| (access.certainty, access.location));
+        all
+    }
+}
+
+pub(crate) fn certainty(definite: bool) -> Certainty {
+    if definite { Certainty::Definite } else { Certainty::May }
+}
+
+/// What several roles on the same data amount to.
+pub(crate) fn joined_role(roles: impl Iterator<Item = Role>) -> Role {
+    let (mut reads, mut writes) = (false, false);
+    for role in roles {
+        reads |= role.reads();
+        writes |= role.writes();
+    }
+    match (reads, writes) {
+        (true, true) => Role::ReadWrite,
+        (_, true) => Role::Write,
+        _ => Role::Read,
+    }
+}
+
+/// An instruction whose length is written by another one can reach further than it does now.
+fn widen_written_lengths(data: &Collected<'_>, index: &mut Index) {
+    for length in &data.lengths {
+        let mut written = false;
+        index.overlapping(&data.spaces, length.len, |span| {
+            let elsewhere = data.uses.get(span.by).is_some_and(|it| it.location != length.location);
+            // RES and the instructions of a control element leave LEN alone: they do not overlap it.
+            written |= elsewhere && span.role.writes();
+        });
+        if written {
+            index.add(length.beyond);
+        }
+    }
+}
+
+fn index_can_leave_files(image: &Image, data: &Collected<'_>) -> bool {
+    let indexed = data.uses.iter().any(|it| it.through == Through::IndexRegister);
+    let own_status_file = image.family().is_micrologix() && image.family() != Family::MicroLogix1000;
+    let across = Address::element(FileType::S, 2, 2).with_bit(3);
+    indexed && !own_status_file && image.value_at(&across) == Some(Value::Bit(true))
+}
+
+/// Order of addresses: data files by number, then module files, then function files.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct GroupKey {
+    class: u8,
+    file: u16,
+    file_type: FileType,
+    computed: bool,
+    slot: u16,
+    first: u64,
+    bits: Reverse<u64>,
+    text: String,
+}
+
+fn group_key(address: &Address, area: Option<Area>) -> GroupKey {
+    let file_type = address.file_type;
+    let class = match file_type {
+        FileType::M0 | FileType::M1 => 1,
+        t if t.is_function_file() => 2,
+        _ => 0,
+    };
+    let (first, bits) = area.map_or((0, 0), |area| (area.first, area.bits));
+    let slots = file_type.has_slots();
+    GroupKey {
+        class,
+        file: address.file.number().unwrap_or(u16::MAX),
+        file_type,
+        computed: area.is_none(),
+        slot: if slots { address.element.number().unwrap_or(u16::MAX) } else { 0 },
+        first: if slots {
+            let bit = address.bit.as_ref().and_then(ladder::Place::number).unwrap_or(0);
+            u64::from(address.word.unwrap_or(0)) * 16 + u64::from(bit)
+        } else {
+            first
+        },
+        bits: Reverse(bits),
+        text: if area.is_none() { address.to_string() } else { String::new() },
+    }
+}
+
+/// Instructions that own the element they name: what they do to it is their own bookkeeping.
+pub(crate) fn owns_element(kind: Option<Kind>) -> bool {
+    matches!(
+        kind,
+        Some(Kind::Timer | Kind::Counter | Kind::Control | Kind::MessageBlock | Kind::PidBlock | Kind::RoutingBlock)
+    )
+}
