@@ -6,4 +6,9 @@
 pub mod code;
 mod codes;
 pub mod from_rss;
+pub mod json;
+mod message;
+pub mod slc;
+pub mod tables;
+pub mod to_rss;
 pub mod verify;

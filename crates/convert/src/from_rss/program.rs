@@ -1,10 +1,7 @@
 //! `PROGRAM FILES` to rungs: marks become structure, texts become typed operands.
 
 use instr::{Form, Kind, Stored};
-use ladder::{
-    Branch, Element, Expression, Instruction, MessageSetup, Mnemonic, Operand, ProgramFile, ProgramFileKind, Rung,
-    Series,
-};
+use ladder::{Branch, Element, Expression, Instruction, Mnemonic, Operand, ProgramFile, ProgramFileKind, Rung, Series};
 use rss::Text;
 use rss::program::{self, Item, LadFile, ProgramFiles};
 
@@ -129,7 +126,7 @@ pub(crate) fn instruction(stored: &program::Instruction<'_>, notes: &mut Notes<'
         operands,
         displayed,
         compiled: stored.has_code != 0,
-        message: stored.message.as_ref().map(|setup| Box::new(message(setup))),
+        message: stored.message.as_ref().map(|setup| Box::new(crate::message::settings(setup))),
     }
 }
 
@@ -140,7 +137,11 @@ fn typed(form: &Form, texts: &[Text<'_>]) -> (Vec<Operand>, Vec<Option<String>>)
     let mut rest = texts.iter();
     for (index, definition) in form.operands.iter().enumerate() {
         let text = rest.next().map(Text::decode).unwrap_or_default();
-        operands.push(operand(definition.kind, &text));
+        operands.push(match definition.stored {
+            // `Setup Screen`, `?` or nothing: a placeholder, never program content.
+            Stored::Blank => Operand::Empty,
+            _ => operand(definition.kind, &text),
+        });
         if definition.stored == Stored::SourceAndValue
             && let Some(value) = rest.next()
         {
@@ -162,54 +163,4 @@ fn operand(kind: Kind, text: &str) -> Operand {
         return Operand::Expression(expression);
     }
     Operand::parse(text)
-}
-
-fn message(setup: &program::MessageSetup<'_>) -> MessageSetup {
-    let mut settings = Vec::new();
-    let mut add = |name: &'static str, value: String| settings.push((name.into(), value));
-    let text = |text: &Text<'_>| text.decode().into_owned();
-    let bytes = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02X}")).collect::<Vec<_>>().join(" ");
-    add("Communication Command", text(&setup.command));
-    add("Channel", setup.channel.to_string());
-    add("Message Timeout", text(&setup.timeout));
-    add("Size in Elements", text(&setup.size));
-    add("Target Data Table Address", text(&setup.target));
-    add("Data Table Address", text(&setup.local));
-    add("Node", text(&setup.node));
-    add("Target Address", text(&setup.host));
-    add("Routing Information", text(&setup.routing));
-    for hop in &setup.hops {
-        add("Hop Address", text(&hop.address));
-        add("Hop h0", hop.h0.to_string());
-        add("Hop h1", hop.h1.map(|n| n.to_string()).join(" "));
-    }
-    if let Some(cip) = &setup.cip {
-        add("Service Code (hex)", text(&cip.service));
-        for (names, values) in [
-            (["Class (dec)", "Instance (dec)", "Attribute (dec)"], &cip.path_decimal),
-            (["Class (hex)", "Instance (hex)", "Attribute (hex)"], &cip.path_hex),
-        ] {
-            for (name, value) in names.into_iter().zip(values) {
-                add(name, text(value));
-            }
-        }
-        add("Size in Bytes", text(&cip.length));
-        add("Data Table Address (send)", text(&cip.data));
-        add("g0", cip.g0.to_string());
-        add("Cached Data", bytes(&cip.blob));
-    }
-    // What is not understood keeps its place in the record as its name.
-    add("m0", setup.m0.to_string());
-    add("m1", setup.m1.to_string());
-    add("Status", format!("{:#06x}", setup.status));
-    add("m2", setup.m2.to_string());
-    add("m3", bytes(&setup.m3));
-    add("m4", bytes(&setup.m4));
-    add("m5", text(&setup.m5));
-    add("m6", text(&setup.m6));
-    add("m7", text(&setup.m7));
-    add("m8", text(&setup.m8));
-    add("m9", text(&setup.m9));
-    add("m10", setup.m10.to_string());
-    MessageSetup { settings }
 }
