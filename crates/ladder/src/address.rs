@@ -258,7 +258,8 @@ impl Reader<'_> {
             _ => self.place(depth)?,
         };
         let mut address = Address { indexed, file_type, file, element: Place::Number(0), word: None, bit: None };
-        if self.take(b'/') {
+        // A bit counted through file I or O would need the I/O configuration to find its slot.
+        if !file_type.has_slots() && self.take(b'/') {
             // `B3/17`: bits counted through the whole file.
             address.bit = Some(self.place(depth)?);
             self.spread_file_bit(&mut address);
@@ -471,6 +472,7 @@ mod tests {
             ("N7:0]", 4),
             ("U:4", 0),
             ("T4:0.PRE/DN", 9),
+            ("I1/3", 2),
         ] {
             assert_eq!(Address::parse(text).map_err(|e| e.offset), Err(offset), "{text}");
         }
