@@ -56,9 +56,9 @@ pub struct CalledFile {
 }
 
 impl CalledFile {
-    /// No rung calls it and the processor does not start it either.
+    /// No JSR names it, and it is not the main program. An interrupt can still start it: see `entries`.
     pub fn is_never_called(&self) -> bool {
-        self.called_by.is_empty() && self.entries.is_empty()
+        self.called_by.is_empty() && !self.entries.iter().any(|entry| entry.kind == EntryKind::Main)
     }
 }
 
@@ -152,7 +152,7 @@ impl CallGraph {
         graph
     }
 
-    /// Ladder files that nothing starts.
+    /// Ladder files that no rung calls. Those with `entries` are routines of an interrupt or fault.
     pub fn never_called(&self) -> impl Iterator<Item = &CalledFile> {
         self.files.iter().filter(|file| file.is_never_called())
     }
@@ -337,7 +337,9 @@ mod tests {
         let targets: Vec<&Target> = graph.calls.iter().map(|call| &call.target).collect();
         assert_eq!(targets, [&Target::File(3), &Target::Missing(9), &Target::File(4), &Target::File(6)]);
         let never: Vec<u16> = graph.never_called().map(|file| file.number).collect();
-        assert_eq!(never, [5, 8], "S:31 is no interrupt file of a MicroLogix, PFN 2 is none of any");
+        assert_eq!(never, [5, 7, 8]);
+        let started: Vec<u16> = graph.never_called().filter(|f| !f.entries.is_empty()).map(|f| f.number).collect();
+        assert_eq!(started, [7], "S:31 is no interrupt file of a MicroLogix, PFN 2 is none of any");
         let reachable: Vec<u16> = graph.files.iter().filter(|f| f.reachable).map(|f| f.number).collect();
         assert_eq!(reachable, [2, 3, 4, 7], "6 is called by a file that never runs");
         assert_eq!(graph.file(7).map(|f| f.entries[0].source.clone()).as_deref(), Some("S:29"));

@@ -1,6 +1,6 @@
 //! How much of a program is documented.
 
-use ladder::{Documentation, Image, Target};
+use ladder::{Address, Documentation, Image, Target};
 
 use crate::xref::CrossReference;
 
@@ -34,8 +34,7 @@ impl Coverage {
     pub fn build(image: &Image, documentation: &Documentation, xref: &CrossReference<'_>) -> Coverage {
         let mut figures = Coverage::default();
         for address in xref.named() {
-            let shown = documentation.shown(&Target::from(address), "");
-            let (symbol, description) = (shown.symbol.is_some(), !shown.description.is_empty());
+            let (symbol, description) = documented(documentation, address);
             figures.addresses += 1;
             figures.with_symbol += usize::from(symbol);
             figures.with_description += usize::from(description);
@@ -53,5 +52,38 @@ impl Coverage {
             }
         }
         figures
+    }
+}
+
+/// Whether an address has a symbol and a description, its own or its element's. The rules of
+/// [`Documentation::shown`] without making the texts.
+pub(crate) fn documented(documentation: &Documentation, address: &Address) -> (bool, bool) {
+    let whole = Address { indexed: false, word: None, bit: None, ..address.clone() };
+    let part = !address.file_type.has_slots() && (address.word.is_some() || address.bit.is_some());
+    let own = documentation.entry(&Target::from(address));
+    let element = if part { documentation.entry(&Target::Address(whole)) } else { None };
+    let any = |has: fn(&ladder::AddressEntry) -> bool| own.is_some_and(has) || element.is_some_and(has);
+    (any(|entry| !entry.symbol.is_empty()), any(|entry| !entry.description.is_empty()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ladder::AddressEntry;
+
+    #[test]
+    fn agrees_with_what_is_shown() {
+        let mut docs = Documentation::default();
+        for (text, symbol, lines) in
+            [("T4:0", "CYCLE", 0), ("T4:1/DN", "", 2), ("I:1.0", "WORD", 1), ("B3:0/1", "A", 1), ("T4:1", "B", 0)]
+        {
+            let target = Target::Address(Address::parse(text).expect(text));
+            docs.add(AddressEntry { target, symbol: symbol.into(), description: vec!["x".into(); lines] });
+        }
+        for text in ["T4:0", "T4:0/DN", "T4:1/DN", "T4:1.ACC", "I:1.0", "I:1.0/3", "B3:0/1", "B3:0", "N7:0", "#N7:0"] {
+            let address = Address::parse(text).expect(text);
+            let shown = docs.shown(&Target::from(&address), "");
+            assert_eq!(documented(&docs, &address), (shown.symbol.is_some(), !shown.description.is_empty()), "{text}");
+        }
     }
 }

@@ -108,12 +108,17 @@ pub(crate) struct Placed {
 pub(crate) struct Spaces<'a> {
     image: &'a Image,
     by_key: HashMap<Key, usize>,
+    /// Whole data files by number, because nearly every address is in one.
+    by_number: Vec<Option<(FileType, usize)>>,
     list: Vec<Space>,
 }
 
+/// File numbers that exist.
+const NUMBERS: usize = 256;
+
 impl<'a> Spaces<'a> {
     pub(crate) fn new(image: &'a Image) -> Spaces<'a> {
-        Spaces { image, by_key: HashMap::new(), list: Vec::new() }
+        Spaces { image, by_key: HashMap::new(), by_number: vec![None; NUMBERS], list: Vec::new() }
     }
 
     pub(crate) fn get(&self, space: usize) -> Option<&Space> {
@@ -134,12 +139,19 @@ impl<'a> Spaces<'a> {
 
     /// The space of this key if any address has led there.
     pub(crate) fn find(&self, key: Key) -> Option<usize> {
-        self.by_key.get(&key).copied()
+        let known = match key {
+            Key { number: Some(number), slot: None, .. } => self.by_number.get(usize::from(number)).copied().flatten(),
+            _ => None,
+        };
+        match known {
+            Some((file_type, id)) if file_type == key.file_type => Some(id),
+            _ => self.by_key.get(&key).copied(),
+        }
     }
 
     fn id(&mut self, key: Key) -> usize {
-        if let Some(id) = self.by_key.get(&key) {
-            return *id;
+        if let Some(id) = self.find(key) {
+            return id;
         }
         let file = key.number.and_then(|number| self.image.data_file(key.file_type, number));
         let stored = file.map(|file| file.words_per_element).filter(|words| *words > 0);
@@ -153,6 +165,12 @@ impl<'a> Spaces<'a> {
         });
         let id = self.list.len() - 1;
         self.by_key.insert(key, id);
+        // Function files share their numbers with data files: the first one met keeps the place.
+        if let Key { number: Some(number), slot: None, file_type } = key
+            && let Some(place @ None) = self.by_number.get_mut(usize::from(number))
+        {
+            *place = Some((file_type, id));
+        }
         id
     }
 

@@ -130,7 +130,7 @@ pub struct DataValues {
 
 impl DataValues {
     /// The state bits of the control word by name, in display order: EN TT DN or CU CD DN OV UN UA.
-    pub fn bits(&self, kind: ElementKind) -> impl Iterator<Item = (&'static str, bool)> {
+    pub fn bits(self, kind: ElementKind) -> impl Iterator<Item = (&'static str, bool)> {
         let names: &'static [&'static str] = match kind {
             ElementKind::Timer => &["EN", "TT", "DN"],
             ElementKind::Counter => &["CU", "CD", "DN", "OV", "UN", "UA"],

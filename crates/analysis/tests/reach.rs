@@ -275,11 +275,11 @@ fn messages_move_what_their_set_up_says() {
         instruction.message = Some(Box::new(MessageSetup { settings }));
         image
     };
-    let read = with(&[("Communication Command", "03 Read Holding Registers (4xxxxx)"), ("Size", "7")]);
+    let read = with(&[("Communication Command", "03 Read Holding Registers (4xxxxx)"), ("Size in Elements", "7")]);
     assert_eq!(lookup(&read, "N10:6"), ["w MSG N10:0..N10:6"]);
     assert_eq!(lookup(&read, "N10:7"), [""; 0]);
     assert_eq!(lookup(&read, "MG13:0/DN"), ["w MSG MG13:0/DN"]);
-    let write = with(&[("Communication Command", "16 Write Multiple Registers (4xxxxx)"), ("Size", "2")]);
+    let write = with(&[("Communication Command", "16 Write Multiple Registers (4xxxxx)"), ("Size in Elements", "2")]);
     assert_eq!(lookup(&write, "N10:1"), ["r MSG N10:0..N10:1"]);
     let unknown = with(&[]);
     assert_eq!(lookup(&unknown, "N10:40"), ["rw? MSG N10:*"]);

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 use instr::{Form, Kind, Role};
 use ladder::{Address, Documentation, Expression, FileType, Image, Instruction, Mnemonic, Operand, Target};
@@ -80,6 +81,10 @@ pub(crate) fn collect<'a>(image: &'a Image, documentation: &'a Documentation) ->
             symbols: Symbols::new(documentation),
         },
     };
+    // About two operands with three stretches per instruction; growing step by step costs more.
+    let count: usize = image.ladder_files().flat_map(|file| &file.rungs).map(|rung| rung.series.len()).sum();
+    collector.out.uses.reserve(count.saturating_mul(2));
+    collector.out.spans.reserve(count.saturating_mul(2));
     for (location, instruction) in instructions(image) {
         collector.instruction(location, instruction);
     }
@@ -89,7 +94,7 @@ pub(crate) fn collect<'a>(image: &'a Image, documentation: &'a Documentation) ->
 pub(super) struct Collector<'a> {
     pub(super) image: &'a Image,
     /// Parsed addresses of the status words an instruction writes.
-    status: HashMap<&'static str, Vec<Address>>,
+    status: HashMap<&'static str, Rc<[Address]>>,
     named: HashMap<(usize, u64, u64), usize>,
     pub(super) out: Collected<'a>,
 }
@@ -127,8 +132,8 @@ impl<'a> Collector<'a> {
         let site = Site { location, instruction, form };
         // Text forms leave placeholders out; every stored form has them.
         let aligned = form.operands.len() == operands;
-        let rows: Vec<&'static instr::Operand> = form.operands.iter().filter(|row| aligned || row.in_text()).collect();
-        for (row, operand) in rows.into_iter().zip(&instruction.operands) {
+        let rows = form.operands.iter().filter(|row| aligned || row.in_text());
+        for (row, operand) in rows.zip(&instruction.operands) {
             self.operand(Slot { site, row }, operand);
         }
         self.fixed_registers(site);
@@ -289,16 +294,16 @@ impl<'a> Collector<'a> {
         let addresses = self
             .status
             .entry(known.mnemonic)
-            .or_insert_with(|| known.status.iter().filter_map(|text| Address::parse(text).ok()).collect())
-            .clone();
-        for address in addresses {
-            let placed = self.out.spaces.place(&address);
+            .or_insert_with(|| known.status.iter().filter_map(|text| Address::parse(text).ok()).collect());
+        let addresses = Rc::clone(addresses);
+        for address in addresses.iter() {
+            let placed = self.out.spaces.place(address);
             let by = self.add_use(Use {
                 location: site.location,
                 mnemonic: &site.instruction.mnemonic,
                 operand: "",
                 kind: None,
-                address: Cow::Owned(address),
+                address: Cow::Owned(address.clone()),
                 symbol: None,
                 through: Through::Implied,
                 compiled: site.instruction.compiled,

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use ladder::{Address, FileType, Target, Value};
+use ladder::{Address, FileType, Value};
 
+use crate::coverage::documented;
 use crate::location::Location;
 
 use super::collect::Named;
@@ -149,8 +150,7 @@ impl CrossReference<'_> {
         if !readers.is_empty() && !written {
             add(FindingKind::ReadNeverWritten, readers);
         }
-        let shown = self.documentation.shown(&Target::from(&*named.address), "");
-        if shown.symbol.is_none() && shown.description.is_empty() {
+        if documented(self.documentation, &named.address) == (false, false) {
             add(FindingKind::Undocumented, users);
         }
         found

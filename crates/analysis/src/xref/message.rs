@@ -48,12 +48,12 @@ pub(super) fn transfer(instruction: &Instruction, role: Role) -> Transfer {
     let cip = command.as_deref().is_some_and(|c| c.contains("cip"));
     let size = if cip {
         // The length of a CIP request counts the bytes sent; nothing bounds what is received.
-        match number(&["length"]) {
+        match number(&["bytes"]) {
             Some(bytes) if role == Role::Read => Size::Bits(bytes.div_ceil(2) * 16),
             _ => Size::Unknown,
         }
     } else {
-        match number(&["size"]) {
+        match number(&["elements"]) {
             Some(points) if is_coil => Size::Bits(points),
             Some(elements) => Size::Elements(elements),
             None => Size::Unknown,
@@ -93,7 +93,8 @@ mod tests {
         ]);
         let expected = Transfer { role: Role::Write, direction_known: true, size: Size::Elements(7) };
         assert_eq!(transfer(&read, Role::ReadWrite), expected);
-        let write = message(&[("Communication Command", "16 Write Multiple Registers (4xxxxx)"), ("Size", "0")]);
+        let write =
+            message(&[("Communication Command", "16 Write Multiple Registers (4xxxxx)"), ("Size in Elements", "0")]);
         let expected = Transfer { role: Role::Read, direction_known: true, size: Size::Unknown };
         assert_eq!(transfer(&write, Role::ReadWrite), expected);
         let none = Instruction::new(Mnemonic::named("MSG"), Vec::new());
@@ -103,7 +104,8 @@ mod tests {
 
     #[test]
     fn a_cip_length_bounds_what_is_sent_only() {
-        let cip = message(&[("Communication Command", "CIP Generic"), ("Length", "252"), ("Size", "3")]);
+        let cip =
+            message(&[("Communication Command", "CIP Generic"), ("Size in Elements", "3"), ("Size in Bytes", "252")]);
         assert_eq!(transfer(&cip, Role::Read).size, Size::Bits(2016));
         assert_eq!(transfer(&cip, Role::Write).size, Size::Unknown);
     }
