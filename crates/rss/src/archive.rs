@@ -72,7 +72,7 @@ pub const MAX_DEPTH: usize = 128;
 pub const MAX_OBJECTS: usize = 1 << 19;
 
 /// Strings that one stream may hold; see [`MAX_OBJECTS`].
-pub const MAX_STRINGS: usize = 1 << 21;
+pub const MAX_STRINGS: usize = 1 << 20;
 
 /// Deviations kept per stream; those beyond are counted only.
 pub(crate) const MAX_NOTES: usize = 200;

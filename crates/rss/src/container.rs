@@ -8,10 +8,13 @@ use std::time::SystemTime;
 pub const SIGNATURE: [u8; 8] = [0xD0, 0xCF, 0x11, 0xE0, 0xA1, 0xB1, 0x1A, 0xE1];
 
 /// Largest file read. The largest known project has 0.8 MB.
-pub const MAX_FILE: usize = 32 << 20;
+pub const MAX_FILE: usize = 16 << 20;
 
 /// Most storages and streams in one file. Known projects have about 90.
 pub const MAX_ENTRIES: usize = 4096;
+
+/// Longest path in bytes. Known projects stay below 150; deep nests of storages would cost quadratic room.
+const MAX_PATH: usize = 1024;
 
 /// What the directory says about a storage or stream apart from its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,13 +78,14 @@ impl Container {
         let mut claimed: u64 = 0;
         let mut entries = Vec::new();
         for entry in file.walk().filter(|e| !e.is_root()) {
+            let refuse = |expected: String| {
+                Err(damage(layout.directory, "directory", expected, "one more or longer".to_owned()))
+            };
             if entries.len() >= MAX_ENTRIES {
-                return Err(damage(
-                    layout.directory,
-                    "directory",
-                    format!("at most {MAX_ENTRIES} entries"),
-                    "one more".into(),
-                ));
+                return refuse(format!("at most {MAX_ENTRIES} storages and streams"));
+            }
+            if entry.path().as_os_str().len() > MAX_PATH {
+                return refuse(format!("paths of at most {MAX_PATH} bytes"));
             }
             entries.push(entry);
         }

@@ -14,10 +14,10 @@ use flate2::{Compress, Compression, Decompress, FlushCompress, FlushDecompress, 
 pub const SIZE: usize = 16;
 
 /// Largest payload inflated; the largest known has 0.6 MB.
-pub const MAX_PAYLOAD: usize = 32 << 20;
+pub const MAX_PAYLOAD: usize = 16 << 20;
 
 /// Most bytes inflated from one project.
-pub const MAX_TOTAL: usize = 48 << 20;
+pub const MAX_TOTAL: usize = 32 << 20;
 
 /// Deflate cannot expand one stored byte to more than this many.
 const MAX_RATIO: usize = 1032;

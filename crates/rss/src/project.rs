@@ -294,7 +294,7 @@ mod tests {
     #[test]
     fn many_bombs_share_one_budget() {
         let mut p = Project::new();
-        let zeros = vec![0; 20 << 20];
+        let zeros = vec![0; MAX_TOTAL / 5 * 2];
         for &kind in StreamKind::NAMED.iter().filter(|k| k.storage() == Some(Storage::ZLIB)).take(5) {
             p.set_payload(ImageKind::Main, kind, &zeros).expect("sets");
         }

@@ -14,7 +14,8 @@ const MIN_ITEM: usize = 2;
 pub(super) fn files<'a>(out: &mut ProgramFiles<'a>, r: &mut Reader<'a>) -> Result<()> {
     r.expect_object("CProgHolder")?;
     let count = r.count("a number of program files", MIN_FILE)?;
-    out.files = Vec::with_capacity(count);
+    // A count is a claim; beyond the usual numbers, items make their room as they come.
+    out.files = Vec::with_capacity(count.min(256));
     r.mark();
     for index in 0..count {
         r.enter("file", index)?;
@@ -42,7 +43,7 @@ fn lad_file<'a>(out: &mut LadFile<'a>, index: usize, r: &mut Reader<'a>) -> Resu
     if usize::from(out.rung_count) != count {
         r.deviation(format_args!("{} rungs, as stated before the name", out.rung_count), count)?;
     }
-    out.rungs.reserve_exact(count);
+    out.rungs.reserve_exact(count.min(1024));
     r.mark();
     for index in 0..count {
         r.enter("rung", index)?;
