@@ -1,6 +1,6 @@
 //! What is written at an instruction: its drawing, operands, values, symbol and description.
 
-use instr::{Drawing, Form, Kind, Position, Stored};
+use instr::{Category, Drawing, Form, Kind, Position, Stored};
 use ladder::{Address, Documentation, FileType, Image, Instruction, Operand, Target, Value};
 
 use crate::Style;
@@ -14,8 +14,8 @@ pub(crate) struct Face {
     pub labels: Vec<(Role, String)>,
     /// The drawing.
     pub body: Body,
-    /// Stands at the right power rail.
-    pub output: bool,
+    /// Stands at the right power rail; `None`: an instruction of which that is not known.
+    pub output: Option<bool>,
 }
 
 /// The drawing of an instruction.
@@ -69,6 +69,8 @@ pub(crate) struct Source<'a> {
     pub image: &'a Image,
     /// Number of the program file.
     pub file: u16,
+    /// The rung has been edited: paper leaves the `<` after its values out.
+    pub edited: bool,
     pub documentation: &'a Documentation,
     pub style: &'a Style,
 }
@@ -81,11 +83,9 @@ impl Source<'_> {
         let (Some(entry), Some(form)) = (entry, form) else {
             return self.unknown(instruction);
         };
-        let output = !matches!(form.position, Position::Input | Position::RungStart);
-        let labels = match documented(form, &instruction.operands) {
-            Some(index) => self.labels(instruction, index),
-            None => Vec::new(),
-        };
+        let output = Some(!matches!(form.position, Position::Input | Position::RungStart));
+        let known = form.operands.len() == instruction.operands.len();
+        let labels = if known { self.labels(instruction, documented(entry, form)) } else { Vec::new() };
         let sign = match form.drawing {
             Drawing::Contact { closed } => Some(Sign::Contact { closed }),
             Drawing::Coil(letters) => Some(Sign::Coil(letters)),
@@ -120,7 +120,7 @@ impl Source<'_> {
             self.push_displayed(&mut rows, instruction, index, false);
         }
         push_setup(&mut rows, instruction);
-        Face { labels: Vec::new(), body: Body::Box { name, title, rows, flags: &[] }, output: false }
+        Face { labels: Vec::new(), body: Body::Box { name, title, rows, flags: &[] }, output: None }
     }
 
     /// Description and symbol of operand `index`.
@@ -218,7 +218,7 @@ impl Source<'_> {
                     let table = self.table_value(form, &instruction.operands, index);
                     let stale = table.as_ref().is_some_and(|value| *value != text && !text.is_empty());
                     let shown = table.unwrap_or_else(|| text.clone());
-                    let live = !shown.is_empty();
+                    let live = !shown.is_empty() && !self.edited;
                     rows.push(Row { name, text: shown, role: Role::Operand, live });
                     if stale {
                         rows.push(Row { name: "  last shown".into(), text, role: Role::Note, live: false });
@@ -247,7 +247,8 @@ impl Source<'_> {
                 None => return,
             },
         };
-        rows.push(Row { name: String::new(), text: value, role: Role::Value, live: instruction.compiled });
+        let live = instruction.compiled && !self.edited;
+        rows.push(Row { name: String::new(), text: value, role: Role::Value, live });
     }
 
     /// The value in the data table at a direct address that names one number.
@@ -323,18 +324,17 @@ fn form(entry: &'static instr::Instruction, image: &Image, operands: usize) -> O
     of_family.or_else(any).or(entry.forms.first())
 }
 
-/// The operand whose symbol and description stand above: what an output writes, what an input tests.
-fn documented(form: &Form, operands: &[Operand]) -> Option<usize> {
-    let documentable = |index: &usize| {
-        matches!(operands.get(*index), Some(Operand::Address(_) | Operand::ProgramFile(_) | Operand::Label { .. }))
-    };
+/// The operand whose symbol and description stand above, and no other, documented or not: what an
+/// input tests first, the control element of shift instructions, the destination of outputs, the
+/// first operand of string instructions. Agrees with every printed box that tells operands apart;
+/// for sequencers, stacks and ASCII port instructions, never seen printed, it follows BSL.
+fn documented(entry: &instr::Instruction, form: &Form) -> usize {
     let of = |wanted: &dyn Fn(&instr::Operand) -> bool| form.operands.iter().position(wanted);
     let control = of(&|o| matches!(o.kind, Kind::Control));
-    let written = of(&|o| o.role.writes());
-    let tested = form.code_order.first().copied();
-    let first = match form.position {
-        Position::Output => control.or(written),
-        _ => tested,
+    let index = match form.position {
+        Position::Output if entry.category == Category::Ascii => control,
+        Position::Output => control.or_else(|| of(&|o| o.role.writes())),
+        _ => form.code_order.first().copied(),
     };
-    first.filter(documentable).or_else(|| (0..operands.len()).find(documentable))
+    index.unwrap_or(0)
 }

@@ -21,8 +21,8 @@ pub(crate) enum NotDrawn {
     Width,
 }
 
-/// Columns a branch needs besides its legs: a stub of wire and two rails.
-const BRANCH_SIDES: usize = 3;
+/// Columns a branch needs besides its legs: two rails and a stub of wire outside each.
+const BRANCH_SIDES: usize = 4;
 /// Columns at the left side of a line that continues another one.
 const INDENT: usize = 2;
 /// Columns that lines of a wrapped series leave for the wires between them.
@@ -70,7 +70,7 @@ pub(crate) fn measure(source: &Source<'_>, series: &Series, limit: usize, depth:
     }
     let inner = if series.len() > 1 { limit.saturating_sub(WRAP_SIDES) } else { limit };
     let mut blocks = Vec::with_capacity(series.len());
-    for element in series {
+    for (index, element) in series.iter().enumerate() {
         blocks.push(match element {
             Element::Instruction(instruction) => {
                 if inner < LEAF_MIN {
@@ -78,7 +78,9 @@ pub(crate) fn measure(source: &Source<'_>, series: &Series, limit: usize, depth:
                 }
                 let face = source.face(instruction);
                 let Leaf { width, above, below, items } = leaf(&face, inner);
-                Block { width, above, below, output: face.output, content: Content::Leaf(items) }
+                // Rungs end in outputs, so an unknown instruction behind conditions is taken for one.
+                let output = face.output.unwrap_or(index > 0 && index + 1 == series.len());
+                Block { width, above, below, output, content: Content::Leaf(items) }
             }
             Element::Branch(branch) => measure_branch(source, branch, inner, depth)?,
         });
@@ -196,13 +198,13 @@ fn place_blocks(items: &mut Vec<Item>, blocks: Vec<Block>, mut x: usize, y: usiz
 }
 
 fn place_legs(items: &mut Vec<Item>, legs: Vec<Measured>, x: usize, y: usize, width: usize) {
-    let (left, right) = (x + 1, x + width - 1);
+    let (left, right) = (x + 1, x + width - 2);
     if legs.is_empty() {
         items.push(Item::across(x, x + width, y));
         return;
     }
     items.push(Item::across(x, left, y));
-    items.push(Item::across(right, right + 1, y));
+    items.push(Item::across(right, x + width, y));
     let mut entry = y;
     let mut last = (y, y);
     let mut bottom = None;

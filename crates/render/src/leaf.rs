@@ -5,7 +5,7 @@ use crate::scene::{Item, Role, Shape};
 use crate::text::{width, wrap};
 
 /// Narrowest place an instruction is drawn in; texts that need more are wrapped.
-pub(crate) const LEAF_MIN: usize = 24;
+pub(crate) const LEAF_MIN: usize = 18;
 
 /// Columns of a contact with nothing but short texts: some wire at both sides.
 const SYMBOL_MIN: usize = 5;

@@ -104,8 +104,9 @@ pub fn scene(
     documentation: &Documentation,
     style: &Style,
 ) -> scene::Scene {
-    let source = face::Source { image, file: file.number, documentation, style };
-    file.rungs.get(index).map_or_else(scene::Scene::default, |rung| rung::compose(&source, file, index, rung))
+    let Some(rung) = file.rungs.get(index) else { return scene::Scene::default() };
+    let source = face::Source { image, file: file.number, edited: rung.edited, documentation, style };
+    rung::compose(&source, file, index, rung)
 }
 
 /// The head of a program file, as at the top of printed pages:
