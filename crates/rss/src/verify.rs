@@ -54,24 +54,35 @@ pub fn verify(project: &Project) -> Verification {
 /// The account of one stream.
 #[must_use]
 pub fn verify_stream(stream: Stream<'_>) -> StreamReport {
+    account(stream, true)
+}
+
+/// Reads one stream as its record and drops it: the account without writing
+/// again (`identical` then says only that reading met no error).
+#[must_use]
+pub fn read_stream(stream: Stream<'_>) -> StreamReport {
+    account(stream, false)
+}
+
+fn account(stream: Stream<'_>, write: bool) -> StreamReport {
     let mut report = match stream.kind() {
-        StreamKind::ProgramFiles => record::<ProgramFiles>(stream),
-        StreamKind::DataFiles => record::<DataFiles>(stream),
-        StreamKind::ExtensionalDataFiles => record::<ExtensionalDataFiles>(stream),
-        StreamKind::MemDatabase => record::<Database>(stream),
-        StreamKind::Processor => record::<Processor>(stream),
-        StreamKind::IoConfiguration => record::<IoConfiguration>(stream),
-        StreamKind::ChannelConfiguration => record::<crate::channel::ChannelConfiguration>(stream),
-        StreamKind::PowerConfiguration => record::<PowerConfiguration>(stream),
-        StreamKind::Compiler => record::<Compiler>(stream),
-        StreamKind::Version => record::<Version>(stream),
-        StreamKind::RevisionNotes => record::<RevisionNotes>(stream),
-        StreamKind::RcpHolder => record::<RcpHolder>(stream),
-        StreamKind::SourceControl => record::<SourceControl>(stream),
+        StreamKind::ProgramFiles => record::<ProgramFiles>(stream, write),
+        StreamKind::DataFiles => record::<DataFiles>(stream, write),
+        StreamKind::ExtensionalDataFiles => record::<ExtensionalDataFiles>(stream, write),
+        StreamKind::MemDatabase => record::<Database>(stream, write),
+        StreamKind::Processor => record::<Processor>(stream, write),
+        StreamKind::IoConfiguration => record::<IoConfiguration>(stream, write),
+        StreamKind::ChannelConfiguration => record::<crate::channel::ChannelConfiguration>(stream, write),
+        StreamKind::PowerConfiguration => record::<PowerConfiguration>(stream, write),
+        StreamKind::Compiler => record::<Compiler>(stream, write),
+        StreamKind::Version => record::<Version>(stream, write),
+        StreamKind::RevisionNotes => record::<RevisionNotes>(stream, write),
+        StreamKind::RcpHolder => record::<RcpHolder>(stream, write),
+        StreamKind::SourceControl => record::<SourceControl>(stream, write),
         StreamKind::CustomDataMonitors | StreamKind::GraphicFiles | StreamKind::RecipeFiles => {
-            record::<Monitors>(stream)
+            record::<Monitors>(stream, write)
         }
-        StreamKind::Trends => record::<Trends>(stream),
+        StreamKind::Trends => record::<Trends>(stream, write),
         StreamKind::SummaryInformation => summary(stream),
         StreamKind::ApplicationHelp
         | StreamKind::DataLogging
@@ -99,9 +110,10 @@ fn report(stream: Stream<'_>) -> StreamReport {
     }
 }
 
-fn record<'p, R: Record<'p>>(stream: Stream<'p>) -> StreamReport {
+fn record<'p, R: Record<'p>>(stream: Stream<'p>, write: bool) -> StreamReport {
     let parsed = parse::<R>(stream.payload(), stream.path(), Mode::Permissive);
-    let identical = parsed.error.is_none() && serialize(&parsed.value).is_ok_and(|b| b == stream.payload());
+    let same = || serialize(&parsed.value).is_ok_and(|b| b == stream.payload());
+    let identical = parsed.error.is_none() && (!write || same());
     StreamReport {
         understood: parsed.understood,
         identical,
