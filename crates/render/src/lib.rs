@@ -23,8 +23,8 @@
 //! ]);
 //! ```
 //!
-//! Layout is separate from painting: [`scene`] gives the items of a rung with their places on a
-//! grid, which any other painter can use; [`rung`] paints them as text. This crate reads no files and
+//! Layout is separate from painting: [`scene()`] gives the items of a rung with their places on a
+//! grid, which any other painter can use; [`rung()`] paints them as text. This crate reads no files and
 //! knows no terminal: width and colour are given in [`Style`].
 
 mod face;
@@ -96,7 +96,7 @@ pub fn rung(image: &Image, file: &ProgramFile, index: usize, documentation: &Doc
     text
 }
 
-/// The items of a rung and their places, see [`rung`]. Colour and ASCII do not matter here.
+/// The items of a rung and their places, see [`rung()`]. Colour and ASCII do not matter here.
 pub fn scene(
     image: &Image,
     file: &ProgramFile,
