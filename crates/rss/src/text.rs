@@ -65,8 +65,22 @@ pub enum LengthForm {
 ///
 /// `Display` decodes code page 1252 (or UTF-16 for the wide form, which no known
 /// project uses). Comparing with `str` compares the decoded characters.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Text<'a> {
+#[derive(Clone)]
+pub struct Text<'a>(Repr<'a>);
+
+/// Three words, as a program holds tens of thousands of these.
+#[derive(Clone)]
+enum Repr<'a> {
+    /// 8-bit, length in its shortest form: nearly every text.
+    Borrowed(&'a [u8]),
+    /// The same, owned.
+    Owned(Box<[u8]>),
+    /// Any other form.
+    Odd(Box<Odd<'a>>),
+}
+
+#[derive(Clone)]
+struct Odd<'a> {
     bytes: Cow<'a, [u8]>,
     wide: bool,
     form: LengthForm,
@@ -76,13 +90,16 @@ impl<'a> Text<'a> {
     /// Text of 8-bit bytes, its length written in the shortest form.
     #[must_use]
     pub const fn from_bytes(bytes: &'a [u8]) -> Self {
-        Text { bytes: Cow::Borrowed(bytes), wide: false, form: LengthForm::Shortest }
+        Text(Repr::Borrowed(bytes))
     }
 
     /// Text as read: bytes, width and the form of the length.
     #[must_use]
-    pub(crate) const fn from_parts(bytes: &'a [u8], wide: bool, form: LengthForm) -> Self {
-        Text { bytes: Cow::Borrowed(bytes), wide, form }
+    pub(crate) fn from_parts(bytes: &'a [u8], wide: bool, form: LengthForm) -> Self {
+        match (wide, form) {
+            (false, LengthForm::Shortest) => Text::from_bytes(bytes),
+            _ => Text(Repr::Odd(Box::new(Odd { bytes: Cow::Borrowed(bytes), wide, form }))),
+        }
     }
 
     /// Encodes a Rust string to code page 1252.
@@ -93,53 +110,102 @@ impl<'a> Text<'a> {
         if text.is_ascii() {
             return Ok(Text::from_bytes(text.as_bytes()));
         }
-        Ok(Text { bytes: Cow::Owned(encode(text)?), wide: false, form: LengthForm::Shortest })
+        Ok(Text(Repr::Owned(encode(text)?.into_boxed_slice())))
     }
 
     /// The stored bytes: one per character, or two (UTF-16, low byte first) if [`Text::is_wide`].
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
-        &self.bytes
+        match &self.0 {
+            Repr::Borrowed(bytes) => bytes,
+            Repr::Owned(bytes) => bytes,
+            Repr::Odd(odd) => &odd.bytes,
+        }
     }
 
     /// True if no character is stored.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.bytes.is_empty()
+        self.as_bytes().is_empty()
     }
 
     /// Length in stored bytes.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.bytes.len()
+        self.as_bytes().len()
     }
 
     /// True for the UTF-16 form.
     #[must_use]
     pub fn is_wide(&self) -> bool {
-        self.wide
+        matches!(&self.0, Repr::Odd(odd) if odd.wide)
     }
 
     /// The form in which the length was written.
     #[must_use]
     pub fn length_form(&self) -> LengthForm {
-        self.form
+        match &self.0 {
+            Repr::Odd(odd) => odd.form,
+            _ => LengthForm::Shortest,
+        }
     }
 
     /// The characters; borrows for plain ASCII.
     #[must_use]
     pub fn decode(&self) -> Cow<'_, str> {
-        if !self.wide {
-            return decode(&self.bytes);
+        if !self.is_wide() {
+            return decode(self.as_bytes());
         }
-        let units = self.bytes.chunks_exact(2).map(|p| u16::from_le_bytes([p[0], p[1]]));
+        let units = self.as_bytes().chunks_exact(2).map(|p| u16::from_le_bytes([p[0], p[1]]));
         Cow::Owned(char::decode_utf16(units).map(|r| r.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
     }
 
     /// The same text, owning its bytes.
     #[must_use]
     pub fn into_owned(self) -> Text<'static> {
-        Text { bytes: Cow::Owned(self.bytes.into_owned()), wide: self.wide, form: self.form }
+        Text(match self.0 {
+            Repr::Borrowed(bytes) => Repr::Owned(bytes.into()),
+            Repr::Owned(bytes) => Repr::Owned(bytes),
+            Repr::Odd(odd) => {
+                let Odd { bytes, wide, form } = *odd;
+                Repr::Odd(Box::new(Odd { bytes: Cow::Owned(bytes.into_owned()), wide, form }))
+            }
+        })
+    }
+
+    /// What makes two texts the same: bytes and form, owned or not.
+    fn key(&self) -> (&[u8], bool, LengthForm) {
+        (self.as_bytes(), self.is_wide(), self.length_form())
+    }
+}
+
+impl Default for Text<'_> {
+    fn default() -> Self {
+        Text::from_bytes(&[])
+    }
+}
+
+impl PartialEq for Text<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.key() == other.key()
+    }
+}
+
+impl Eq for Text<'_> {}
+
+impl std::hash::Hash for Text<'_> {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.key().hash(state);
+    }
+}
+
+impl fmt::Debug for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.decode())?;
+        match (self.is_wide(), self.length_form()) {
+            (false, LengthForm::Shortest) => Ok(()),
+            (wide, form) => write!(f, " (wide: {wide}, length: {form:?})"),
+        }
     }
 }
 
