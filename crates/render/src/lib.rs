@@ -36,6 +36,7 @@ mod rung;
 pub mod scene;
 mod text;
 
+use std::convert::Infallible;
 use std::io;
 use std::ops::RangeInclusive;
 
@@ -92,7 +93,10 @@ impl Style {
 pub fn rung(image: &Image, file: &ProgramFile, index: usize, documentation: &Documentation, style: &Style) -> String {
     let mut text = String::new();
     let scene = scene(image, file, index, documentation, style);
-    paint::paint(&scene, style.color, style.ascii, &mut text);
+    let Ok(()) = paint::paint(&scene, style.color, style.ascii, |line| {
+        text.push_str(line);
+        Ok::<(), Infallible>(())
+    });
     text
 }
 
@@ -116,7 +120,7 @@ pub fn header(file: &ProgramFile, style: &Style) -> String {
 }
 
 /// Writes the head of a program file and its rungs, or those of `rungs` (from 0), one after the
-/// other, so that no more than one rung is in memory.
+/// other, so that no more than the layout of one rung is in memory.
 ///
 /// # Errors
 /// What writing to `out` gives.
@@ -132,7 +136,8 @@ pub fn program_file(
     let all = 0..=file.rungs.len().saturating_sub(1);
     let (first, last) = rungs.unwrap_or(all).into_inner();
     for index in (first..file.rungs.len()).take_while(|index| *index <= last) {
-        out.write_all(rung(image, file, index, documentation, style).as_bytes())?;
+        let scene = scene(image, file, index, documentation, style);
+        paint::paint(&scene, style.color, style.ascii, |line| out.write_all(line.as_bytes()))?;
     }
     Ok(())
 }

@@ -41,8 +41,13 @@ struct Cell {
     covered: bool,
 }
 
-/// Writes the scene, each row ended by a line feed.
-pub(crate) fn paint(scene: &Scene, color: bool, ascii: bool, out: &mut String) {
+/// Gives the rows of the scene to `emit`, each ended by a line feed.
+pub(crate) fn paint<E>(
+    scene: &Scene,
+    color: bool,
+    ascii: bool,
+    mut emit: impl FnMut(&str) -> Result<(), E>,
+) -> Result<(), E> {
     let mut strokes = Vec::with_capacity(scene.items.len() * 2);
     for item in &scene.items {
         strokes_of(item, ascii, &mut strokes);
@@ -52,6 +57,7 @@ pub(crate) fn paint(scene: &Scene, color: bool, ascii: bool, out: &mut String) {
     let mut open = Vec::new();
     let mut rails = Vec::new();
     let mut cells = Vec::with_capacity(scene.width);
+    let mut line = String::new();
     for y in 0..scene.height {
         cells.clear();
         cells.resize(scene.width, Cell::default());
@@ -83,8 +89,11 @@ pub(crate) fn paint(scene: &Scene, color: bool, ascii: bool, out: &mut String) {
         for (x, role, text) in texts {
             write_text(&mut cells, x, role, &text);
         }
-        finish(&cells, color, if ascii { &PLAIN } else { &LINES }, out);
+        line.clear();
+        finish(&cells, color, if ascii { &PLAIN } else { &LINES }, &mut line);
+        emit(&line)?;
     }
+    Ok(())
 }
 
 fn strokes_of<'a>(item: &'a Item, ascii: bool, out: &mut Vec<(usize, Stroke<'a>)>) {
