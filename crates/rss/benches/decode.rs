@@ -56,7 +56,7 @@ fn corpus() -> Vec<PathBuf> {
 fn synthetic(rungs: usize) -> Project {
     let instruction = |opcode: u16, operand: &'static str, code: &'static [u8]| {
         Item::Instruction(Instruction {
-            operands: if operand.is_empty() { Vec::new() } else { vec![Text::from_bytes(operand.as_bytes())] },
+            operands: (!operand.is_empty()).then(|| Text::from_bytes(operand.as_bytes())).into_iter().collect(),
             has_code: u16::from(!code.is_empty()),
             opcode,
             code: Cow::Borrowed(code),

@@ -13,10 +13,12 @@
 //! their own in the stream and stay so here, because they can carry code or not.
 
 mod message;
+mod operands;
 mod read;
 mod write;
 
 pub use message::{CipTail, MessageSetup, PathHop};
+pub use operands::Operands;
 
 use crate::archive::{Reader, Record, Writer};
 use crate::error::Result;
@@ -126,7 +128,7 @@ pub enum Item<'a> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Instruction<'a> {
     /// Operand texts as RSLogix shows them: sources, each mostly followed by the value last displayed.
-    pub operands: Vec<Text<'a>>,
+    pub operands: Operands<'a>,
     /// 1 if compiled code follows, 0 if the instruction was not compiled since it was edited.
     pub has_code: u16,
     /// Which instruction.

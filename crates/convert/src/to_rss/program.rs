@@ -133,7 +133,7 @@ impl ProgramWriter<'_> {
             }
         };
         Ok(program::Instruction {
-            operands: texts(form, instruction, code.as_deref())?,
+            operands: texts(form, instruction, code.as_deref())?.into(),
             has_code: u16::from(code.is_some()),
             opcode,
             code: Cow::Owned(code.unwrap_or_default()),

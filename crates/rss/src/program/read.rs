@@ -1,9 +1,10 @@
 //! Reads program files. What was complete before an error stays.
 
 use super::message::MessageSetup;
-use super::{Branch, Instruction, Item, LadFile, Leg, ProgramFiles, Rung, mark};
+use super::{Branch, Instruction, Item, LadFile, Leg, Operands, ProgramFiles, Rung, mark};
 use crate::archive::{Object, Reader};
 use crate::error::Result;
+use crate::text::Text;
 use std::borrow::Cow;
 
 /// Fewest bytes that a file, a rung, an instruction take, for checking counts.
@@ -157,7 +158,7 @@ const BLANK_RUNG: Rung<'static> = Rung { leg: Leg { items: Vec::new() }, unknown
 const BLANK_LEG: Item<'static> = Item::Leg(Leg { items: Vec::new() });
 const BLANK_BRANCH: Item<'static> = Item::Branch(Branch { items: Vec::new() });
 const BLANK_INSTRUCTION: Item<'static> = Item::Instruction(Instruction {
-    operands: Vec::new(),
+    operands: Operands::one(Text::from_bytes(&[])),
     has_code: 0,
     opcode: 0,
     x: 0,
@@ -169,8 +170,14 @@ const BLANK_INSTRUCTION: Item<'static> = Item::Instruction(Instruction {
 #[inline]
 fn instruction<'a>(out: &mut Instruction<'a>, r: &mut Reader<'a>) -> Result<()> {
     let count = r.count("a number of operands", 1)?;
-    if count > 0 {
-        r.strings("an operand", count, &mut out.operands)?;
+    match count {
+        1 => out.operands = Operands::one(r.string("an operand")?),
+        0 => out.operands = Operands::none(),
+        _ => {
+            let mut operands = Vec::new();
+            r.strings("an operand", count, &mut operands)?;
+            out.operands = operands.into();
+        }
     }
     let at = r.offset();
     let [h0, h1, o0, o1, x0, x1, y0, y1] = r.array("code mark, opcode, x and y")?;
