@@ -53,6 +53,8 @@ pub struct Container {
     pub root: Meta,
     /// Storages and streams in directory order, parents first.
     pub nodes: Vec<Node>,
+    /// Streams that could be read in part only, each with the place where its sectors end.
+    pub damage: Vec<Deviation>,
 }
 
 impl Container {
@@ -74,8 +76,7 @@ impl Container {
         }
         let layout = Layout::read(bytes)?;
         let mut file = cfb::CompoundFile::open(Cursor::new(bytes)).map_err(|e| layout.locate(&e))?;
-        let mut out = Container { root: meta(&file.root_entry()), nodes: Vec::new() };
-        let mut claimed: u64 = 0;
+        let mut out = Container { root: meta(&file.root_entry()), ..Container::default() };
         let mut entries = Vec::new();
         for entry in file.walk().filter(|e| !e.is_root()) {
             let refuse = |expected: String| {
@@ -89,29 +90,29 @@ impl Container {
             }
             entries.push(entry);
         }
+        // What all streams together may still take: what the file holds.
+        let mut left = bytes.len();
         for entry in entries {
             let path = path_text(&entry);
             let data = if entry.is_stream() {
-                claimed = claimed.saturating_add(entry.len());
-                if claimed > bytes.len() as u64 {
-                    return Err(damage(
-                        layout.directory,
-                        "directory",
-                        format!("streams that fit the file of {} bytes together", bytes.len()),
-                        format!("{} bytes claimed by {} and those before it", claimed, path.escape_debug()),
-                    ));
+                let mut data = Vec::new();
+                let claim = usize::try_from(entry.len()).unwrap_or(usize::MAX);
+                let result = file.open_stream(entry.path()).and_then(|stream| {
+                    data.reserve_exact(claim.min(left));
+                    stream.take(left as u64).read_to_end(&mut data)
+                });
+                left -= data.len().min(left);
+                if result.is_err() || data.len() != claim {
+                    let why = result.err().map(|e| format!(" ({e})")).unwrap_or_default();
+                    out.damage.push(Deviation {
+                        stream: path.clone(),
+                        space: Space::Stored,
+                        offset: data.len(),
+                        record: String::new(),
+                        expected: format!("the {claim} bytes that the directory states"),
+                        found: format!("{} bytes{why}", data.len()),
+                    });
                 }
-                // The sum check bounds this to the size of the file.
-                let mut data = Vec::with_capacity(usize::try_from(entry.len()).unwrap_or(0));
-                let mut stream = file.open_stream(entry.path()).map_err(|e| layout.locate(&e))?;
-                stream.read_to_end(&mut data).map_err(|e| {
-                    damage(
-                        data.len(),
-                        "",
-                        format!("{} bytes of stream {}", entry.len(), path.escape_debug()),
-                        e.to_string(),
-                    )
-                })?;
                 Some(data)
             } else {
                 None
@@ -331,7 +332,14 @@ mod tests {
         // The directory entry of the 5000-byte stream: length at offset 120 of its 128 bytes.
         let at = bytes.windows(4).position(|w| w == 5000_u32.to_le_bytes()).expect("has the length");
         bytes[at..at + 4].copy_from_slice(&0x7FFF_FFFF_u32.to_le_bytes());
-        let error = Container::read(&bytes).expect_err("must fail");
-        assert!(error.to_string().contains("streams that fit the file"), "{error}");
+        let container = Container::read(&bytes).expect("reads in part");
+        assert_eq!(container.damage.len(), 1);
+        let message = container.damage[0].to_string();
+        assert!(message.starts_with("PROCESSOR/ObjectData, stored offset"), "{message}");
+        assert!(message.contains("expected the 2147483647 bytes that the directory states"), "{message}");
+        let total: usize = container.streams().map(|(_, data)| data.len()).sum();
+        assert!(total <= bytes.len());
+        // The other streams are whole.
+        assert_eq!(container.stream("ONLINEIMAGE/PROCESSOR/ObjectData"), Some(&[8; 63][..]));
     }
 }

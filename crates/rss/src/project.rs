@@ -123,9 +123,12 @@ impl Project {
     }
 
     /// Everything that deviates below the level of records: missing streams,
-    /// envelopes, zlib streams. Opens every payload.
+    /// streams cut short, envelopes, zlib streams. Opens every payload.
     pub fn deviations(&self) -> impl Iterator<Item = &Deviation> {
-        self.missing.iter().chain(self.slots.iter().flat_map(|slot| Stream { project: self, slot }.deviations()))
+        self.missing
+            .iter()
+            .chain(&self.container.damage)
+            .chain(self.slots.iter().flat_map(|slot| Stream { project: self, slot }.deviations()))
     }
 
     /// Replaces the payload of a named stream, or adds the stream. If the
@@ -159,7 +162,9 @@ impl Project {
             }
             None => payload.to_vec(),
         };
-        self.container.set_stream(&kind.path(image), content);
+        let path = kind.path(image);
+        self.container.set_stream(&path, content);
+        self.container.damage.retain(|d| !d.stream.eq_ignore_ascii_case(&path));
         self.index();
         Ok(())
     }
@@ -221,6 +226,12 @@ impl<'p> Stream<'p> {
     #[must_use]
     pub fn payload(&self) -> &'p [u8] {
         if self.has_envelope() { &self.opened().payload } else { self.stored() }
+    }
+
+    /// What the compound file lacks of the stream.
+    pub fn damage(&self) -> impl Iterator<Item = &'p Deviation> {
+        let path = self.path();
+        self.project.container.damage.iter().filter(move |d| d.stream == path)
     }
 
     /// What is wrong with the envelope or the zlib stream.

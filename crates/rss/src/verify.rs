@@ -93,8 +93,10 @@ fn account(stream: Stream<'_>, write: bool) -> StreamReport {
             carried(stream)
         }
     };
-    let below = stream.deviations();
-    report.deviations.splice(0..0, below.iter().cloned());
+    let below: Vec<_> = stream.damage().chain(stream.deviations()).cloned().collect();
+    // Bytes the compound file lacks cannot come back.
+    report.identical &= stream.damage().next().is_none();
+    report.deviations.splice(0..0, below);
     report
 }
 
