@@ -22,7 +22,7 @@ use instr::{Kind, Role};
 use ladder::{Address, Documentation, Family, FileType, Image, Mnemonic, Operand, Value};
 
 use crate::location::Location;
-use crate::space::Area;
+use crate::space::{Area, Key};
 use collect::{Collected, Use, collect};
 use index::{Index, Span};
 
@@ -326,6 +326,30 @@ impl<'a> CrossReference<'a> {
         let mut spans = Vec::new();
         self.index.overlapping(&self.data.spaces, area, |span| spans.push(*span));
         spans
+    }
+
+    /// For each element of a file whether some access certainly touches it, ranges included.
+    pub(crate) fn touched_elements(&self, file_type: FileType, number: u16, elements: u16) -> Vec<bool> {
+        // Steps up where an access begins and down behind its end; their running sum counts accesses.
+        let mut steps = vec![0_i64; usize::from(elements) + 1];
+        let space = self.data.spaces.find(Key { file_type, number: Some(number), slot: None });
+        for span in self.data.spans.iter().filter(|span| span.definite && Some(span.area.space) == space) {
+            let stride = self.data.spaces.stride(span.area.space);
+            let clamp = |element: u64| usize::try_from(element).unwrap_or(usize::MAX).min(usize::from(elements));
+            let (first, end) = (clamp(span.area.first / stride), clamp(span.area.end().div_ceil(stride)));
+            if let Some(step) = steps.get_mut(first) {
+                *step += 1;
+            }
+            if let Some(step) = steps.get_mut(end) {
+                *step -= 1;
+            }
+        }
+        let mut open = 0;
+        let touched = steps.into_iter().take(usize::from(elements)).map(|step| {
+            open += step;
+            open > 0
+        });
+        touched.collect()
     }
 
     pub(crate) fn place(&self, address: &Address) -> Option<Area> {

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use analysis::{CallGraph, Coverage, CrossReference, Target, TimerReport, Usage};
+use analysis::{CallGraph, Coverage, CrossReference, FindingKind, Target, TimerReport, Usage};
 use ladder::{Project, Source, TimeBase};
 use rss::Mode;
 
@@ -130,6 +130,12 @@ fn every_project_can_be_analysed() {
                 accesses += group.accesses.len();
             }
             unknown += xref.unresolved().len();
+            // RSLogix verifies a rung only if all its data exists: an address that seems to lie outside
+            // would be a wrong length, slot or element size of ours.
+            let outside = [FindingKind::BeyondEnd, FindingKind::NoSuchFile, FindingKind::NoSuchPoint];
+            let findings = xref.findings();
+            let mut wrong = findings.iter().filter(|f| outside.contains(&f.kind) && f.expected.is_none());
+            assert!(wrong.next().is_none(), "{}: {:?}", path.display(), wrong.next());
         }
     }
     println!("{read_in} projects of {}, {accesses} accesses, {unknown} operands without data", paths.len());

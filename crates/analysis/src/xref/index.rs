@@ -83,3 +83,59 @@ impl Index {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::{OPEN, Part};
+    use ladder::{Address, DataFile, FileType, Image};
+
+    /// The sorted lookup finds what a comparison with every span finds.
+    #[test]
+    fn finds_what_a_full_scan_finds() {
+        let image = Image { data_files: vec![DataFile::new(FileType::T, 4, 40)], ..Image::default() };
+        let mut spaces = Spaces::new(&image);
+        let space = spaces.place(&Address::element(FileType::T, 4, 0)).area.space;
+        // A small linear congruential generator: the same areas in every run.
+        let mut seed = 12_345_u64;
+        let mut random = |below: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % below
+        };
+        let mut area = || {
+            let first = random(40 * 48);
+            match random(10) {
+                0 => Area { space, first, bits: OPEN, part: None },
+                1 => {
+                    let offset = random(47);
+                    let bits = random(48 - offset) + 1;
+                    Area { space, first: 0, bits: OPEN, part: Some(Part { offset, bits }) }
+                }
+                2 => Area { space, first, bits: 1 + random(400), part: None },
+                _ => Area { space, first, bits: 1 + random(48), part: None },
+            }
+        };
+        let spans: Vec<Span> = (0..150)
+            .map(|by| Span { area: area(), role: Role::Read, definite: true, level: Level::Word, by })
+            .collect();
+        let index = Index::new(&spans, &spaces);
+        for _ in 0..100 {
+            let asked = area();
+            let mut found = Vec::new();
+            index.overlapping(&spaces, asked, |span| found.push(span.by));
+            found.sort_unstable();
+            // Bit by bit, without the arithmetic of the areas.
+            let has = |area: &Area, bit: u64| {
+                bit >= area.first
+                    && bit < area.end()
+                    && area.part.is_none_or(|p| (p.offset..p.offset + p.bits).contains(&(bit % 48)))
+            };
+            let expected: Vec<usize> = spans
+                .iter()
+                .filter(|span| (0..60 * 48).any(|bit| has(&span.area, bit) && has(&asked, bit)))
+                .map(|span| span.by)
+                .collect();
+            assert_eq!(found, expected, "{asked:?}");
+        }
+    }
+}
