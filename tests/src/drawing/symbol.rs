@@ -1,6 +1,6 @@
 //! The shapes that stand in the gaps of a wire: contacts, brackets, coils and boxes, with their texts.
 
-use super::page::{Colour, Stroke, Text};
+use super::page::{Colour, Fill, Stroke, Text};
 use super::sheet::Sheet;
 use super::{ROW, near};
 
@@ -211,13 +211,16 @@ fn row(text: &Text, y: f64) -> i32 {
     row
 }
 
-/// The black text around `x` in the row at height `y`.
+/// The black text closest to `x` in the row at height `y`. An address stands in the middle;
+/// a bit number over a module name is pushed aside by blanks that RSLogix prints before it.
 fn centred(sheet: &Sheet, x: f64, y: f64) -> Option<String> {
+    let away = |t: &Text| (f64::midpoint(t.x0, t.x1) - x).abs();
     let fits = |t: &&Text| {
-        let middle = (f64::midpoint(t.x0, t.x1) - x).abs() < 3.0;
-        t.colour == Colour::Black && (t.y - y).abs() < ROW / 2.0 && middle && !t.text.trim().is_empty()
+        let near_by = t.colour == Colour::Black && (t.y - y).abs() < ROW / 2.0 && away(t) < 14.0;
+        near_by && !t.text.trim().is_empty() && strip(sheet, x, t.y).is_none()
     };
-    sheet.texts.iter().find(fits).map(|t| t.text.trim().to_owned())
+    let closest = sheet.texts.iter().filter(fits).min_by(|a, b| away(a).total_cmp(&away(b)));
+    closest.map(|t| t.text.trim().to_owned())
 }
 
 /// The blue text between the ends of a coil or bracket.
@@ -229,16 +232,20 @@ fn inside(sheet: &Sheet, left: f64, right: f64, y: f64) -> Option<String> {
     sheet.texts.iter().find(fits).map(|t| t.text.trim().to_owned())
 }
 
+/// The coloured strip of a symbol or description at a place. The green behind the wire of a true
+/// instruction is only half a row high.
+fn strip(sheet: &Sheet, x: f64, y: f64) -> Option<&Fill> {
+    sheet.fills.iter().find(|f| {
+        let over = f.x0 <= x && x <= f.x1 && f.y0 < y && y < f.y1;
+        over && matches!(f.colour, Colour::Green | Colour::PaleYellow) && f.y1 - f.y0 > ROW / 2.0 + 1.0
+    })
+}
+
 /// Symbol and description over an instruction: the coloured strips over `x`, row by row upwards.
 fn documentation(sheet: &Sheet, x: f64, y: f64) -> (Vec<String>, Vec<String>) {
     let (mut symbol, mut description) = (Vec::new(), Vec::new());
     let mut height = y - 2.0 * ROW;
-    loop {
-        let strip = sheet.fills.iter().find(|f| {
-            let over = f.x0 <= x && x <= f.x1 && f.y0 < height && height < f.y1;
-            over && matches!(f.colour, Colour::Green | Colour::PaleYellow) && f.y1 - f.y0 > ROW / 2.0 + 1.0
-        });
-        let Some(strip) = strip else { break };
+    while let Some(strip) = strip(sheet, x, height) {
         if sheet.is_title(strip) {
             break;
         }
