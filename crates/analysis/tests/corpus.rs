@@ -134,8 +134,8 @@ fn every_project_can_be_analysed() {
             // would be a wrong length, slot or element size of ours.
             let outside = [FindingKind::BeyondEnd, FindingKind::NoSuchFile, FindingKind::NoSuchPoint];
             let findings = xref.findings();
-            let mut wrong = findings.iter().filter(|f| outside.contains(&f.kind) && f.expected.is_none());
-            assert!(wrong.next().is_none(), "{}: {:?}", path.display(), wrong.next());
+            let wrong = findings.iter().find(|f| outside.contains(&f.kind) && f.expected.is_none());
+            assert!(wrong.is_none(), "{}: {wrong:?}", path.display());
         }
     }
     println!("{read_in} projects of {}, {accesses} accesses, {unknown} operands without data", paths.len());

@@ -79,11 +79,8 @@ fn documentation_and_its_coverage() {
     let mut image = image(&["XIC T4:0/DN; OTE B3:0/0", "XIC B3:0/1; OTE B3:0/2", "END"]);
     document(&mut image, "T4:0", "CYCLE");
     document(&mut image, "B3:0/1", "START");
-    let comment = |text: &str, title: &str| {
-        let owner = CommentOwner::Rung { file: 2, rung: 0 };
-        Some(Comment { text: text.into(), title: title.into(), owner })
-    };
-    image.program_files[0].rungs[0].comment = comment("cycle\r\n", "Part 1");
+    let owner = CommentOwner::Rung { file: 2, rung: 0 };
+    image.program_files[0].rungs[0].comment = Some(Comment { text: "cycle\r\n".into(), title: "Part 1".into(), owner });
     assert_eq!(findings(&image, FindingKind::Undocumented), ["B3:0/0", "B3:0/2"]);
     let xref = CrossReference::build(&image, &image.documentation);
     let coverage = Coverage::build(&image, &image.documentation, &xref);
