@@ -29,7 +29,7 @@ pub(crate) fn symbols(pair: &Pair<'_>) -> Outcome {
     outcome
 }
 
-fn spelled(target: &Target) -> String {
+pub(crate) fn spelled(target: &Target) -> String {
     match target {
         Target::Address(address) => address_text(address),
         other => other.to_string(),

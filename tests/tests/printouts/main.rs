@@ -94,3 +94,19 @@ fn projects_agree_with_their_printouts() {
     }
     assert!(faults.is_empty(), "{faults}");
 }
+
+/// A hand-made listing of addresses, symbols and descriptions. Its descriptions are worded
+/// differently here and there (RSLogix's own report sides with the project), so they do not count.
+#[test]
+fn the_tag_dictionary_agrees_with_its_project() {
+    let Some(root) = rungs_tests::corpus::root() else { return };
+    for (rows, project) in pair::tags(&root) {
+        let entries = project.main.documentation.entries();
+        let known = |address: &str, symbol: &str| {
+            entries.iter().any(|e| documentation::spelled(&e.target) == address && e.symbol == symbol)
+        };
+        let missing: Vec<_> = rows.iter().filter(|row| !known(&row.address, &row.symbol)).collect();
+        println!("{} of {} tags are in the project", rows.len() - missing.len(), rows.len());
+        assert!(!rows.is_empty() && missing.is_empty(), "{missing:?}");
+    }
+}

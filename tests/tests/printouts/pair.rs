@@ -4,7 +4,7 @@ use crate::{ASPECTS, Outcome};
 use ladder::{Image, Project};
 use rungs_tests::corpus;
 use rungs_tests::drawing::{self, DrawnFile};
-use rungs_tests::printout::{self, Candidate, Printout};
+use rungs_tests::printout::{self, Candidate, Printout, TagRow};
 use std::path::{Path, PathBuf};
 
 /// A report with its drawing and the projects that may be its source.
@@ -41,6 +41,18 @@ pub(crate) fn reports(root: &Path) -> Vec<Report> {
     let projects = corpus::files(root, ".rss").expect("corpus can be listed");
     let texts = corpus::files(root, ".pdf.txt").expect("corpus can be listed");
     texts.iter().filter(|t| !t.ends_with(TAGS)).map(|text| read(root, text, &projects)).collect()
+}
+
+/// The tag dictionaries of the corpus, each with the project of its folder.
+pub(crate) fn tags(root: &Path) -> Vec<(Vec<TagRow>, Project)> {
+    let projects = corpus::files(root, ".rss").expect("corpus can be listed");
+    let texts = corpus::files(root, TAGS).expect("corpus can be listed");
+    let pair = |text: &PathBuf| {
+        let (rows, _) = printout::parse_tags(&std::fs::read_to_string(text).expect("the listing is UTF-8 text"));
+        let project = printout::candidates(text, "", &projects).iter().find_map(|c| open(&c.path));
+        (rows, project.expect("a project lies beside the listing"))
+    };
+    texts.iter().map(pair).collect()
 }
 
 fn read(root: &Path, text: &Path, projects: &[PathBuf]) -> Report {
