@@ -5,6 +5,7 @@
 
 pub mod code;
 mod codes;
+pub mod csv;
 pub mod from_rss;
 pub mod json;
 mod message;
