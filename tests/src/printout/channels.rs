@@ -15,7 +15,7 @@ pub struct Channel {
     pub settings: Vec<Setting>,
 }
 
-/// A line of a channel: `IP Address: 192.168.1.112`.
+/// A line of a channel: `IP Address: 192.168.0.10`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setting {
     /// The label as printed, without the repeated channel and driver before it.

@@ -102,9 +102,9 @@ mod tests {
 
     #[test]
     fn heading_with_and_without_names() {
-        let file = heading("LAD 255 - MANUAL - Which pumps are in Auto? --- Total Rungs in File = 6").unwrap();
+        let file = heading("LAD 255 - MANUAL - Is it in hand mode? --- Total Rungs in File = 6").unwrap();
         assert_eq!((file.number, file.name.as_str(), file.total), (255, "MANUAL", 6));
-        assert_eq!(file.description, "Which pumps are in Auto?");
+        assert_eq!(file.description, "Is it in hand mode?");
         let bare = heading("LAD 2 -    --- Total Rungs in File = 6").unwrap();
         assert_eq!((bare.name.as_str(), bare.total), ("", 6));
     }

@@ -102,7 +102,7 @@ mod tests {
     fn a_name_may_be_empty_or_hold_spaces() {
         let read = |line| from_right::<5>(line).map(|(rest, name)| (name, rest[0].to_owned()));
         assert_eq!(read("        1   SYS   0   No   0"), Some((String::new(), "1".to_owned())));
-        assert_eq!(read("REJ TIMERS  9 LADDER 235 No 10613"), Some(("REJ TIMERS".to_owned(), "9".to_owned())));
+        assert_eq!(read("OUT TIMERS  9 LADDER 120 No 4321"), Some(("OUT TIMERS".to_owned(), "9".to_owned())));
         assert_eq!(read("LADDER 235 No"), None);
     }
 }

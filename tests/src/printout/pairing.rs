@@ -66,10 +66,10 @@ mod tests {
 
     #[test]
     fn the_closest_name_of_the_folder_comes_first() {
-        let projects = ["a/motor.RSS", "a/cascading_timers.RSS", "b/single_timer.RSS", "a/single_timer.RSS"];
+        let projects = ["a/motor.RSS", "a/lamp_two_timers.RSS", "b/lamp_timer.RSS", "a/lamp_timer.RSS"];
         let projects: Vec<PathBuf> = projects.iter().map(PathBuf::from).collect();
-        let found = candidates(Path::new("a/single_timer_live.pdf.txt"), "SINGLE_TIMER_LIVE.RSS", &projects);
+        let found = candidates(Path::new("a/lamp_timer_live.pdf.txt"), "LAMP_TIMER_LIVE.RSS", &projects);
         let names: Vec<_> = found.iter().map(|c| c.path.to_string_lossy().into_owned()).collect();
-        assert_eq!(names, ["a/single_timer.RSS", "a/cascading_timers.RSS", "a/motor.RSS"]);
+        assert_eq!(names, ["a/lamp_timer.RSS", "a/lamp_two_timers.RSS", "a/motor.RSS"]);
     }
 }

@@ -8,7 +8,7 @@ const OTHER_SAVE: &str = "printed from another save of the project";
 const TEXT_AND_CODE: &str = "stored operand texts differ from the compiled code; RSLogix printed the code";
 /// RSLogix counts the bits of a slot through all its words: `O:0/37` on paper for `O:0.2/5`.
 const SLOT_BITS: &str = "bits of a slot are shown by word and bit, not counted through the slot";
-/// `128_SOURCE_BITS/[INDEX]` on paper.
+/// `SOURCE/[INDEX]` on paper.
 const MIXED_SYMBOL: &str = "the symbol inside the brackets is not joined to the symbol before them";
 
 /// Part of the report's path, aspect, number of rows, reason.
