@@ -12,6 +12,7 @@
 
 mod calls;
 mod coverage;
+pub mod csv;
 mod location;
 mod space;
 mod timers;
