@@ -23,6 +23,7 @@
 //! An operation code is a plain number here; what it looks like in a file is the business of `rss`.
 //! A code that nobody has seen is `None`, never a guess.
 
+pub mod exec;
 mod families;
 mod model;
 pub mod reference;

@@ -1,0 +1,41 @@
+//! What instructions compute: their rules on plain values, beside their definitions.
+//!
+//! Every function here takes values and returns values. Addresses, memory, the order of execution
+//! and the clock belong to the caller; so does storing what a function returns. The functions are
+//! what the instruction reference, a scan engine and a plain tree walker share, and they can be
+//! tested with two numbers.
+//!
+//! Families differ ([`Lineage`]) and documentation ends in places ([`choices`]); both travel in
+//! [`Rules`]. The evidence of each rule stands in its documentation, in these words:
+//!
+//! * *printed*: a page of a Rockwell manual that was read says so;
+//! * *manual, unseen*: what those manuals are remembered to say, the page not at hand;
+//! * *community*: forums, courses, other simulators;
+//! * *inferred*: follows from the others;
+//! * *open*: nobody says; the function takes a documented default, most with a [`choices::Choice`].
+//!
+//! ```
+//! use instr::exec::{Lineage, Number, Rules, Width, math};
+//! use ladder::Family;
+//!
+//! let rules = Rules::of(Family::MicroLogix1000);
+//! assert_eq!(rules.lineage, Lineage::M10);
+//! let quotient = math::div(Number::Word(11), Number::Word(2), Width::Word, rules.math(0));
+//! assert_eq!(quotient.value, Some(Number::Word(6)));
+//! assert_eq!(quotient.register.map(|r| (r.high, r.low)), Some((5, 1)));
+//! ```
+//!
+//! No function panics, whatever the values, lengths and positions are.
+
+pub mod choices;
+pub mod compare;
+pub mod conversion;
+mod flags;
+pub mod logic;
+pub mod math;
+mod number;
+mod rules;
+
+pub use flags::Flags;
+pub use number::{Number, Outcome, Register, Width};
+pub use rules::{Lineage, MathMode, Rules};
