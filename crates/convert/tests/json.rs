@@ -131,7 +131,11 @@ fn a_line_is_a_rung() {
 #[track_caller]
 fn refused(pointer: &str, value: Value) -> String {
     let mut document = to_json(&json_support::project());
-    *document.pointer_mut(pointer).expect("a member to change") = value;
+    let (owner, name) = pointer.rsplit_once('/').expect("a pointer");
+    match document.pointer_mut(owner).expect("a member to change") {
+        Value::Object(members) => drop(members.insert(name.to_owned(), value)),
+        list => list[name.parse::<usize>().expect("an index")] = value,
+    }
     from_json(&document.to_string()).expect_err("an error").to_string()
 }
 
@@ -165,6 +169,7 @@ fn errors_say_where_what_and_found() {
             json!([16]),
             "/data_files/0/forces/0/on/0: expected a bit from 0 to 15, found 16",
         ),
+        ("/data_files/0/force_words", json!(65_535), "/data_files/0/force_words: expected at most 3, found 65535"),
         ("/symbols/0/address", json!("T4"), "/symbols/0/address: expected "),
         ("/symbols/0/kind", json!("adress"), "/symbols/0/kind: expected one of address, "),
         ("/diagnostics/0/severity", json!("bad"), "expected one of note, warning, error, found \"bad\""),

@@ -46,7 +46,7 @@ fn difference(name: &str, a: &Project, b: &Project) -> String {
     ];
     for (a, b) in images.into_iter().flatten() {
         for (a, b) in a.program_files.iter().zip(&b.program_files) {
-            for (number, (x, y)) in a.rungs.iter().zip(&b.rungs).enumerate().filter(|(_, (x, y))| x != y) {
+            if let Some((number, (x, y))) = a.rungs.iter().zip(&b.rungs).enumerate().find(|(_, (x, y))| x != y) {
                 return format!("{name}: file {} rung {number}:\n{x:?}\n{y:?}", a.number);
             }
         }

@@ -105,7 +105,8 @@ fn data_file() -> impl Strategy<Value = DataFile> {
             // Now and then elements of a size that the type does not have.
             let size = size.unwrap_or(file.words_per_element);
             let words = usize::from(elements) * usize::from(size);
-            let forces = file.forces.len();
+            // Nor have force masks always the number of the words.
+            let forces = if file.forces.is_empty() { 0 } else { file.forces.len() + usize::from(number % 3) };
             (
                 proptest::collection::vec(any::<u16>(), words),
                 proptest::collection::vec(any::<(u16, u16)>(), forces),

@@ -91,8 +91,8 @@ fn patch_words(words: &mut Vec<u16>, patch: &RawDoc, path: &Path<'_>) -> Result<
 }
 
 fn forces(list: &[ForceDoc], count: usize, words: usize, path: &Path<'_>) -> Result<Vec<Force>> {
-    // A short document must not claim a long list of masks.
-    let most = words.max(usize::from(u16::MAX));
+    // Masks beyond the words of the file are all listed: a short document cannot claim many.
+    let most = words.saturating_add(list.len());
     if count > most {
         return Err(path.member("force_words").error(format!("at most {most}"), count.to_string()));
     }

@@ -189,7 +189,10 @@ fn instruction(instruction: &Instruction) -> InstructionDoc<'_> {
 fn data_file<'a>(file: &'a DataFile, io: &IoConfiguration) -> DataFileDoc<'a> {
     let values: Vec<_> = (0..file.elements).map(|element| value_of(file, element)).collect();
     let forces = (!file.forces.is_empty()).then(|| {
-        let forced = file.forces.iter().enumerate().filter(|(_, force)| **force != Force::NONE);
+        // Masks of words that the file does not have are listed even where they force nothing: a short
+        // document can then not ask for many of them.
+        let listed = |word: usize, force: &Force| *force != Force::NONE || word >= file.words.len();
+        let forced = file.forces.iter().enumerate().filter(|(word, force)| listed(*word, force));
         forced.map(|(word, force)| force_doc(file.file_type, io, word, *force)).collect()
     });
     DataFileDoc {
