@@ -30,11 +30,14 @@
 pub mod choices;
 pub mod compare;
 pub mod conversion;
+pub mod expression;
 mod flags;
+pub mod function;
 pub mod logic;
 pub mod math;
 mod number;
 mod rules;
+pub mod scale;
 
 pub use flags::Flags;
 pub use number::{Number, Outcome, Register, Width};

@@ -59,8 +59,6 @@ pub enum Choice {
     AciSigned,
     /// Storing a string clears the characters after its end.
     StringClearsRest,
-    /// An index that ASC cannot use leaves the result instead of storing 0.
-    AscBadIndexKeeps,
 }
 
 /// A row of [`LIST`].
@@ -241,13 +239,6 @@ pub const LIST: &[Row] = &[
         "characters behind the end of a stored string stay as they were",
         "they become 0",
         "not described; they are no part of the string",
-    ),
-    row(
-        Choice::AscBadIndexKeeps,
-        "asc-bad-index-keeps",
-        "ASC with an index outside the searched string stores 0",
-        "the result keeps its value",
-        "not described on a page that was seen",
     ),
 ];
 

@@ -5,6 +5,7 @@
 //! results are exact before they are put into the destination. Z and S are those of the stored value.
 
 use std::cmp::Ordering;
+use std::ops::Sub;
 
 use super::choices::Choice;
 use super::flags::Flags;
@@ -106,6 +107,17 @@ pub fn mul(a: Number, b: Number, to: Width, mode: MathMode) -> Outcome {
     }
 }
 
+/// A remainder calls for the next integer away from zero: it is more than half the divisor, or half
+/// and halves go away.
+#[inline]
+pub(super) fn rounds_away<T: Ord + Copy + Sub<Output = T>>(remainder: T, divisor: T, half_away: bool) -> bool {
+    match remainder.cmp(&(divisor - remainder)) {
+        Ordering::Less => false,
+        Ordering::Equal => half_away,
+        Ordering::Greater => true,
+    }
+}
+
 /// The quotient rounded to the nearest integer. Halves go away from zero: printed for positive
 /// quotients; open for negative ones, [`Choice::DivHalfTowardsZero`]. A zero divisor gives 0.
 #[inline]
@@ -114,12 +126,8 @@ pub(super) fn rounded_quotient(dividend: i64, divisor: i64, mode: MathMode) -> i
         return 0;
     };
     let negative = (dividend < 0) != (divisor < 0);
-    let (remainder, other) = (remainder.unsigned_abs(), divisor.unsigned_abs() - remainder.unsigned_abs());
-    let away = match remainder.cmp(&other) {
-        Ordering::Less => false,
-        Ordering::Equal => !(negative && mode.rules.has(Choice::DivHalfTowardsZero)),
-        Ordering::Greater => true,
-    };
+    let half_away = !(negative && mode.rules.has(Choice::DivHalfTowardsZero));
+    let away = rounds_away(remainder.unsigned_abs(), divisor.unsigned_abs(), half_away);
     quotient + i64::from(away) * if negative { -1 } else { 1 }
 }
 
@@ -146,8 +154,8 @@ pub fn div(a: Number, b: Number, to: Width, mode: MathMode) -> Outcome {
     }
 }
 
-/// The limit of a destination that an impossible result becomes.
-pub(super) fn limit(to: Width, negative: bool) -> Number {
+/// The limit of a destination that a result without a value becomes.
+pub(super) const fn limit(to: Width, negative: bool) -> Number {
     match (to, negative) {
         (Width::Word, false) => Number::Word(i16::MAX),
         (Width::Word, true) => Number::Word(i16::MIN),

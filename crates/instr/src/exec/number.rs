@@ -114,16 +114,19 @@ impl Number {
         }
     }
 
-    /// Below zero; not-a-number is not.
+    /// The most significant bit is 1: of a float, -0 included (printed for the MicroLogix 1400).
     #[inline]
     pub fn is_negative(self) -> bool {
         match self {
             Number::Word(value) => value < 0,
             Number::Long(value) => value < 0,
-            Number::Float(value) => value < 0.0,
+            Number::Float(value) => value.is_sign_negative(),
         }
     }
 }
+
+/// What is stored as not-a-number: 7FFFFFFFh (printed for the MicroLogix 1400).
+pub(super) const NOT_A_NUMBER: f32 = f32::from_bits(0x7FFF_FFFF);
 
 /// A denormal number counts as +0, as a source and as a result (printed for the MicroLogix 1100).
 #[inline]
@@ -156,8 +159,8 @@ pub(super) fn fit_integer(result: i64, to: Width, wrap: bool) -> (Number, bool) 
 ///
 /// Into an integer it is rounded to the nearest one, halves to the even one; not-a-number, infinity
 /// and what is out of range are limited whatever S:2/14 says; underflow gives +0 (printed for the
-/// MicroLogix 1100). Halves on SLC are open: [`Choice::FloatTiesAway`]. Not-a-number becomes the
-/// positive limit (open). A float that is no finite number counts as not fitting, and stays in a
+/// MicroLogix 1100 and 1400). Halves on SLC are open: [`Choice::FloatTiesAway`]. Not-a-number becomes
+/// the positive limit (printed for the MicroLogix 1400). A float that is no finite number counts as not fitting, and stays in a
 /// float destination (printed for SLC: the overflow result remains there).
 #[inline]
 pub(super) fn fit_float(result: f32, to: Width, mode: MathMode) -> (Number, bool) {
@@ -180,6 +183,7 @@ pub(super) fn fit_float(result: f32, to: Width, mode: MathMode) -> (Number, bool
             let fits = (-2_147_483_648.0..2_147_483_648.0).contains(&value);
             (Number::Long(if value.is_nan() { i32::MAX } else { value as i32 }), !fits)
         }
+        Width::Float if result.is_nan() => (Number::Float(NOT_A_NUMBER), true),
         Width::Float => (Number::Float(flushed(result)), !result.is_finite()),
     }
 }
@@ -247,6 +251,9 @@ mod tests {
     fn denormals_are_zero() {
         let tiny = f32::MIN_POSITIVE / 2.0;
         assert_eq!(Number::Float(tiny).float(), 0.0);
+        assert!(Number::Float(-0.0).is_negative() && Number::Float(-0.0).is_zero());
+        let nothing = fit_float(-f32::NAN, Width::Float, MX);
+        assert!(matches!(nothing, (Number::Float(value), true) if value.to_bits() == 0x7FFF_FFFF));
         assert_eq!(fit_float(-tiny, Width::Float, MX), (Number::Float(0.0), false));
         assert!(matches!(fit_float(-tiny, Width::Float, MX).0, Number::Float(zero) if zero.is_sign_positive()));
     }
