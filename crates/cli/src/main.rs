@@ -1,2 +1,26 @@
-//! The `rungs` command.
-fn main() {}
+//! The `rungs` command: arguments in, library call, text or JSON out.
+
+// A binary has no API: `pub` only says what other modules use.
+#![allow(unreachable_pub)]
+
+mod args;
+mod commands;
+mod files;
+mod output;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let arguments = args::Arguments::parse();
+    match commands::run(arguments) {
+        Ok(outcome) => outcome.into(),
+        // A reader that went away (`rungs show X | head`) is no failure of ours.
+        Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("rungs: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -226,15 +226,20 @@ fn emit(expression: &Expression, steps: &mut Vec<Step>) -> Result<code::Operand,
     }
 }
 
-/// An operand of compiled code in the spelling of programs, for messages.
+/// An operand of compiled code as a program writes it; `None` for the stack of an expression.
+pub(crate) fn operand_of(operand: &code::Operand) -> Option<Operand> {
+    Some(match operand {
+        code::Operand::Int(value) => Operand::Constant(Constant::integer((*value).into())),
+        code::Operand::Long(value) => Operand::Constant(Constant::integer(*value)),
+        code::Operand::Float(bits) => Operand::Constant(Constant::float(f32::from_bits(*bits))),
+        code::Operand::Stack => return None,
+        code::Operand::Address(address) => Operand::Address(address_of(address)),
+    })
+}
+
+/// The same as text, for messages.
 pub fn spell(operand: &code::Operand) -> String {
-    match operand {
-        code::Operand::Int(value) => value.to_string(),
-        code::Operand::Long(value) => value.to_string(),
-        code::Operand::Float(bits) => ladder::format_float(f32::from_bits(*bits)),
-        code::Operand::Stack => "(stack)".to_owned(),
-        code::Operand::Address(address) => address_of(address).to_string(),
-    }
+    operand_of(operand).map_or_else(|| "(stack)".to_owned(), |operand| operand.to_string())
 }
 
 fn address_of(address: &code::Address) -> Address {

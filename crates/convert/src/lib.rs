@@ -9,7 +9,10 @@ pub mod csv;
 pub mod from_rss;
 pub mod json;
 mod message;
+mod open;
 pub mod slc;
 pub mod tables;
 pub mod to_rss;
 pub mod verify;
+
+pub use open::{OpenError, open};

@@ -67,9 +67,17 @@ impl Notes<'_> {
         self.record = record;
     }
 
+    fn note(&mut self, message: String) {
+        self.push(Severity::Note, message);
+    }
+
     fn warning(&mut self, message: String) {
+        self.push(Severity::Warning, message);
+    }
+
+    fn push(&mut self, severity: Severity, message: String) {
         let place = format!("{}, in {}", self.stream, self.record);
-        self.diagnostics.push(Diagnostic { severity: Severity::Warning, place, message });
+        self.diagnostics.push(Diagnostic { severity, place, message });
     }
 }
 

@@ -7,6 +7,7 @@ use rss::program::{self, Item, LadFile, ProgramFiles};
 
 use super::Notes;
 use super::documentation::Comments;
+use crate::code;
 
 pub(crate) fn program_files(
     stored: &ProgramFiles<'_>,
@@ -61,7 +62,11 @@ fn series(items: &[Item<'_>], notes: &mut Notes<'_>) -> Series {
     for item in items {
         match item {
             Item::Instruction(stored) if stored.is_mark() => {}
-            Item::Instruction(stored) => elements.push(Element::Instruction(instruction(stored, notes))),
+            Item::Instruction(stored) => {
+                let mut read = instruction(stored, notes);
+                resolve_symbols(&mut read, stored, notes);
+                elements.push(Element::Instruction(read));
+            }
             Item::Branch(branch) => elements.push(Element::Branch(legs(&branch.items, notes))),
             Item::Leg(leg) => {
                 notes.warning("expected an instruction or a branch in a leg, found another leg".to_owned());
@@ -127,6 +132,27 @@ pub(crate) fn instruction(stored: &program::Instruction<'_>, notes: &mut Notes<'
         displayed,
         compiled: stored.has_code != 0,
         message: stored.message.as_ref().map(|setup| Box::new(crate::message::settings(setup))),
+    }
+}
+
+/// A verified instruction that stores a symbol as text: the code is what the processor runs, and
+/// RSLogix prints all its operands from the code.
+fn resolve_symbols(read: &mut Instruction, stored: &program::Instruction<'_>, notes: &mut Notes<'_>) {
+    let symbolic = read.operands.iter().any(|operand| matches!(operand, Operand::Symbol(_)));
+    let form = instr::by_opcode(stored.opcode).map(|(_, form)| form);
+    let (true, Some(form)) = (symbolic && stored.has_code != 0, form) else { return };
+    let Ok(rss::code::Code::Operands { operands: coded, .. }) = rss::code::Code::decode(&stored.code) else { return };
+    if coded.len() != form.code_order.len() {
+        return;
+    }
+    for (index, coded) in form.code_order.iter().zip(&coded) {
+        let Some(operand) = read.operands.get_mut(*index) else { continue };
+        if let (Operand::Symbol(_) | Operand::Constant(_), Some(resolved)) = (&*operand, code::operand_of(coded)) {
+            if let Operand::Symbol(symbol) = operand {
+                notes.note(format!("{symbol} stands for {resolved} in the compiled code"));
+            }
+            *operand = resolved;
+        }
     }
 }
 

@@ -1,0 +1,289 @@
+//! The command line: every command, its arguments and an example.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Opens RSLogix 500 projects (SLC 500, MicroLogix) without the vendor's software.
+#[derive(Parser)]
+#[command(
+    name = "rungs",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done, 1 a difference or finding, 2 bad use, 3 unreadable input.\n\
+                  Several files or folders are worked through in order; one that cannot be read is reported and the rest goes on.\n\n\
+                  Example: rungs show conveyor.RSS --file 2"
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// What a project is: processor, versions, I/O, channels, files, memory, documentation
+    #[command(after_help = "Example: rungs info conveyor.RSS\n         rungs info --json plant/ > inventory.jsonl")]
+    Info(InfoArguments),
+    /// The ladder, drawn in the terminal with symbols, descriptions and comments
+    #[command(after_help = "Example: rungs show conveyor.RSS --file 2 --rung 4..7\n         \
+                            rungs show conveyor.RSS --width 120 | less")]
+    Show(ShowArguments),
+    /// Data tables as the engineer knows them
+    #[command(after_help = "Example: rungs data conveyor.RSS\n         rungs data conveyor.RSS N7 T4:0 --radix hex")]
+    Data(DataArguments),
+    /// Every timer and counter: parameters, seconds, live values, who starts, reads and resets it
+    #[command(after_help = "Example: rungs timers conveyor.RSS\n         rungs timers conveyor.RSS T4:0 --json")]
+    Timers(AddressArguments),
+    /// Cross reference: who reads and who writes, word, file, indexed and indirect access included
+    #[command(after_help = "Example: rungs xref conveyor.RSS O:2/5\n         rungs xref conveyor.RSS --findings")]
+    Xref(XrefArguments),
+    /// Lossless check: bytes understood, byte-identical rewrite, compiled code agrees with operands
+    #[command(after_help = "Example: rungs verify conveyor.RSS\n         rungs verify --json archive/ > verify.jsonl")]
+    Verify(VerifyArguments),
+    /// Files for other tools: JSON project, SLC text, CSV tables
+    #[command(after_help = "Example: rungs export conveyor.RSS --to json -o conveyor.json\n         \
+                            rungs export conveyor.RSS --to csv --table timers")]
+    Export(ExportArguments),
+    /// SLC text or JSON project to a complete .RSS with code, data tables and documentation
+    #[command(
+        after_help = "Whether RSLogix 500 opens a project written by this command is UNTESTED: no copy of it was \
+                            available. What is checked is that the file reads back equal here and that code generated from \
+                            text equals the code RSLogix stored in every known project. Do not load it into a controller \
+                            that matters without checking it in RSLogix 500 first.\n\n\
+                            Example: rungs build conveyor.SLC -o conveyor.RSS"
+    )]
+    Build(BuildArguments),
+}
+
+/// Which copy of the program a project holds to work on.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum ImageChoice {
+    /// The program an engineer opens
+    #[default]
+    Main,
+    /// The image last exchanged with a processor
+    Online,
+    /// The automatic save
+    Autosave,
+}
+
+#[derive(Args)]
+pub struct Input {
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// Which copy of the program
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+    /// JSON, one document per line and file
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct InfoArguments {
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Args)]
+pub struct ShowArguments {
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Only these program files
+    #[arg(long = "file", value_name = "N")]
+    pub program_files: Vec<u16>,
+    /// Only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
+    #[arg(long, value_name = "A[..B]")]
+    pub rung: Option<RungRange>,
+    /// Columns to draw in; default: the terminal's width, 100 in a pipe
+    #[arg(long)]
+    pub width: Option<usize>,
+    /// Plain ASCII instead of box-drawing characters
+    #[arg(long)]
+    pub ascii: bool,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Args)]
+pub struct DataArguments {
+    /// A project, then data files (N7), elements (T4:0) or symbols; paths that exist are read as further projects
+    #[arg(required = true, value_name = "FILE [ADDRESS]")]
+    pub files: Vec<String>,
+    /// How words are written
+    #[arg(long, value_enum)]
+    pub radix: Option<Radix>,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Radix {
+    /// Signed decimal
+    Dec,
+    /// Hexadecimal
+    Hex,
+    /// Sixteen bits
+    Bin,
+    /// Octal
+    Oct,
+    /// Two characters
+    Ascii,
+}
+
+#[derive(Args)]
+pub struct AddressArguments {
+    /// A project, then addresses or symbols; paths that exist are read as further projects
+    #[arg(required = true, value_name = "FILE [ADDRESS]")]
+    pub files: Vec<String>,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Args)]
+pub struct XrefArguments {
+    /// A project, then addresses or symbols; paths that exist are read as further projects
+    #[arg(required = true, value_name = "FILE [ADDRESS]")]
+    pub files: Vec<String>,
+    /// Only what deserves a look: written never read, read never written, used but undocumented, beyond a file's end
+    #[arg(long)]
+    pub findings: bool,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Args)]
+pub struct VerifyArguments {
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// JSON, one document per line and file
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct ExportArguments {
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Form to write
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub to: Form,
+    /// With --to csv: which table
+    #[arg(long, value_enum, default_value_t)]
+    pub table: Table,
+    /// File to write; a folder when several projects are exported. Default: standard output
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// Overwrite files that exist
+    #[arg(long)]
+    pub force: bool,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// Which copy of the program (json always holds all)
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// Project as JSON (schema rungs.project/1)
+    Json,
+    /// SLC text, RSLogix 500's own text form
+    Slc,
+    /// A table, see --table
+    Csv,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Table {
+    /// Addresses with symbol and description
+    #[default]
+    Symbols,
+    /// Timers and counters
+    Timers,
+    /// Cross reference
+    Xref,
+}
+
+#[derive(Args)]
+pub struct BuildArguments {
+    /// SLC text (.SLC) or JSON project
+    #[arg(value_name = "TEXT")]
+    pub text: PathBuf,
+    /// Symbols and descriptions, as `rungs export --to csv` writes them; default: TEXT with the ending .csv, if there is one
+    #[arg(long, value_name = "FILE.csv")]
+    pub symbols: Option<PathBuf>,
+    /// Project to write
+    #[arg(short, long, value_name = "FILE.RSS")]
+    pub output: PathBuf,
+    /// Overwrite the output if it exists
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Rung numbers, both ends included.
+#[derive(Clone, Copy)]
+pub struct RungRange {
+    pub first: usize,
+    pub last: usize,
+}
+
+impl std::str::FromStr for RungRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |part: &str, default: usize| match part {
+            "" => Ok(default),
+            digits => digits.parse().map_err(|_| format!("`{digits}` is no rung number")),
+        };
+        let (first, last) = match text.split_once("..") {
+            Some((first, last)) => (number(first, 0)?, number(last.trim_start_matches('='), usize::MAX)?),
+            None => {
+                let only = number(text, 0)?;
+                (only, only)
+            }
+        };
+        if text.is_empty() || first > last {
+            Err("expected A, A..B, A.. or ..B".to_owned())
+        } else {
+            Ok(RungRange { first, last })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn every_command_has_an_example() {
+        let command = Arguments::command();
+        command.clone().debug_assert();
+        for sub in command.get_subcommands() {
+            let help = sub.clone().render_long_help().to_string();
+            assert!(help.contains("Example: rungs "), "{}", sub.get_name());
+        }
+    }
+
+    #[test]
+    fn rung_ranges() {
+        let range = |text: &str| text.parse::<RungRange>().map(|r| (r.first, r.last));
+        assert_eq!(range("4"), Ok((4, 4)));
+        assert_eq!(range("4..7"), Ok((4, 7)));
+        assert_eq!(range("4.."), Ok((4, usize::MAX)));
+        assert_eq!(range("..7"), Ok((0, 7)));
+        assert!(range("7..4").is_err() && range("x").is_err() && range("").is_err());
+    }
+}

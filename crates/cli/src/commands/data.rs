@@ -1,0 +1,236 @@
+//! `rungs data`: data tables.
+
+use std::io::Write;
+
+use ladder::{Address, DataFile, FileType, Place, TimeBase, Value, format_float};
+use serde_json::json;
+
+use super::{Opened, each_project, one_line};
+use crate::args::{DataArguments, Radix};
+use crate::files;
+use crate::output::{Columns, Error, Outcome};
+
+pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
+    let (paths, wanted) = files::split(&arguments.files);
+    each_project(&paths, &arguments.input, |opened, out| {
+        let mut outcome = Outcome::Done;
+        let mut json_files = Vec::new();
+        let mut json_values = Vec::new();
+        if !arguments.input.json {
+            writeln!(out, "{}", opened.title())?;
+        }
+        for choice in choices(opened, &wanted) {
+            match choice {
+                Choice::File(file) if arguments.input.json => json_files.push(file_json(opened, file)),
+                Choice::File(file) => print_file(opened, file, arguments.radix, out)?,
+                Choice::Address(address) => {
+                    let value = opened.image().value_at(&address);
+                    let text =
+                        value.as_ref().map(|value| value_text(value, radix_of(address.file_type, arguments.radix)));
+                    if value.is_none() {
+                        eprintln!("{}: {address} is not in the data table", opened.path.display());
+                        outcome = Outcome::Finding;
+                    }
+                    if arguments.input.json {
+                        json_values.push(json!({"address": address.to_string(), "value": text}));
+                    } else if let Some(text) = text {
+                        let shown = opened.documentation().shown(&(&address).into(), "");
+                        let symbol = shown.symbol.unwrap_or_default();
+                        writeln!(
+                            out,
+                            "{}",
+                            format!("{address}  {text}  {symbol}  {}", one_line(&shown.description)).trim_end()
+                        )?;
+                    }
+                }
+                Choice::Unknown(text) => {
+                    eprintln!("{}: `{text}` is no data file, address or symbol of this project", opened.path.display());
+                    outcome = Outcome::Finding;
+                }
+            }
+        }
+        if arguments.input.json {
+            let file = opened.path.display().to_string();
+            writeln!(out, "{}", json!({"file": file, "data_files": json_files, "values": json_values}))?;
+        }
+        Ok(outcome)
+    })
+}
+
+enum Choice<'o> {
+    File(&'o DataFile),
+    Address(Address),
+    Unknown(String),
+}
+
+fn choices<'o>(opened: &'o Opened, wanted: &[String]) -> Vec<Choice<'o>> {
+    let image = opened.image();
+    let files = || image.data_files.iter().chain(&image.function_files).filter(|f| f.file_type != FileType::Unused);
+    if wanted.is_empty() {
+        return files().map(Choice::File).collect();
+    }
+    let choose = |text: &String| {
+        if let Some(file) = files().find(|file| {
+            let plain = file.file_type.implied_file() == Some(file.number);
+            file.label().eq_ignore_ascii_case(text) || (plain && file.file_type.to_string().eq_ignore_ascii_case(text))
+        }) {
+            return Choice::File(file);
+        }
+        let address = Address::parse(text).ok().or_else(|| {
+            let entry = opened.documentation().by_symbol(text)?;
+            entry.target.direct_address().cloned()
+        });
+        address.map_or_else(|| Choice::Unknown(text.clone()), Choice::Address)
+    };
+    wanted.iter().map(choose).collect()
+}
+
+/// The radix RSLogix shows a type in when nobody chose one.
+fn radix_of(file_type: FileType, chosen: Option<Radix>) -> Radix {
+    chosen.unwrap_or(match file_type {
+        FileType::O | FileType::I | FileType::B => Radix::Bin,
+        FileType::A => Radix::Ascii,
+        _ => Radix::Dec,
+    })
+}
+
+fn word(value: u16, radix: Radix) -> String {
+    match radix {
+        Radix::Dec => value.cast_signed().to_string(),
+        Radix::Hex => format!("{value:X}"),
+        Radix::Bin => format!("{value:016b}"),
+        Radix::Oct => format!("{value:o}"),
+        Radix::Ascii => value
+            .to_be_bytes()
+            .iter()
+            .map(|byte| match byte {
+                0x20..=0x7E => char::from(*byte).to_string(),
+                other => format!("\\{other:02X}"),
+            })
+            .collect(),
+    }
+}
+
+fn value_text(value: &Value, radix: Radix) -> String {
+    match value {
+        Value::Bit(bit) => u8::from(*bit).to_string(),
+        Value::Word(value) => word(value.cast_unsigned(), radix),
+        Value::Long(value) => match radix {
+            Radix::Hex => format!("{value:X}"),
+            Radix::Bin => format!("{value:032b}"),
+            Radix::Oct => format!("{value:o}"),
+            _ => value.to_string(),
+        },
+        Value::Float(value) => format_float(*value),
+        Value::Text(text) => format!("\"{text}\""),
+        Value::Words(words) => words.iter().map(|value| word(*value, radix)).collect::<Vec<_>>().join(" "),
+        Value::Timer(_) | Value::Counter(_) | Value::Control(_) => {
+            let (names, cells) = structure(value);
+            names.iter().zip(cells).map(|(name, cell)| format!("{name} {cell}")).collect::<Vec<_>>().join("  ")
+        }
+    }
+}
+
+/// Column names and cells of a structured element, in the order of printed tables.
+fn structure(value: &Value) -> (&'static [&'static str], Vec<String>) {
+    let bits = |control: u16, count: u16| (0..count).map(move |n| (control >> (15 - n) & 1).to_string());
+    match value {
+        Value::Timer(timer) => {
+            let base = timer.base().map_or("?", TimeBase::text).to_owned();
+            let values = [base, timer.pre.to_string(), timer.acc.to_string()];
+            (&["EN", "TT", "DN", "BASE", "PRE", "ACC"], bits(timer.control, 3).chain(values).collect())
+        }
+        Value::Counter(counter) => {
+            let values = [counter.pre.to_string(), counter.acc.to_string()];
+            (&["CU", "CD", "DN", "OV", "UN", "UA", "PRE", "ACC"], bits(counter.control, 6).chain(values).collect())
+        }
+        Value::Control(control) => {
+            let values = [control.len.to_string(), control.pos.to_string()];
+            (
+                &["EN", "EU", "DN", "EM", "ER", "UL", "IN", "FD", "LEN", "POS"],
+                bits(control.control, 8).chain(values).collect(),
+            )
+        }
+        _ => (&[], Vec::new()),
+    }
+}
+
+/// The address of an element, the way the program writes it.
+fn element_address(opened: &Opened, file: &DataFile, element: u16) -> Address {
+    let io = &opened.image().io;
+    let of_slot = file.file_type.has_slots().then(|| io.address_of(file.file_type, element)).flatten();
+    of_slot.unwrap_or_else(|| Address {
+        file: Place::Number(file.number),
+        ..Address::element(file.file_type, file.number, element)
+    })
+}
+
+fn print_file(opened: &Opened, file: &DataFile, radix: Option<Radix>, out: &mut dyn Write) -> Result<(), Error> {
+    let radix = radix_of(file.file_type, radix);
+    let name = [file.name.as_str(), file.description.as_str()].into_iter().filter(|part| !part.is_empty());
+    let name = name.collect::<Vec<_>>().join(" - ");
+    writeln!(out, "\nData file {}  {}  ({} elements)", file.label(), name, file.elements)?;
+    let symbol = |element: u16| {
+        let address = element_address(opened, file, element);
+        let shown = opened.documentation().shown(&(&address).into(), "");
+        shown.symbol.unwrap_or_else(|| one_line(&shown.description))
+    };
+    let first = file.value(0);
+    let structured = first.as_ref().map(structure).filter(|(names, _)| !names.is_empty());
+    let mut table = match (&structured, file.words_per_element, file.file_type) {
+        (Some((names, _)), _, _) => {
+            let mut headings = vec!["Address"];
+            headings.extend(*names);
+            headings.push("Symbol");
+            Columns::new(&headings)
+        }
+        // Forces and a symbol per word leave no room for several words in a row.
+        _ if !file.forces.is_empty() => Columns::new(&["Address", "Value", "Forced on", "Forced off", "Symbol"]),
+        _ => Columns::new(&["Address", "Value", "Symbol"]),
+    };
+    for element in 0..file.elements {
+        let Some(value) = file.value(element) else { continue };
+        let mut row = vec![element_address(opened, file, element).to_string()];
+        match &structured {
+            Some(_) => row.extend(structure(&value).1),
+            None => row.push(value_text(&value, radix)),
+        }
+        if let Some(force) = file.forces.get(usize::from(element)) {
+            let mask = |bits: u16| if bits == 0 { String::new() } else { word(bits, Radix::Bin) };
+            row.extend([mask(force.on), mask(!force.off)]);
+        }
+        row.push(symbol(element));
+        table.row(row);
+    }
+    Ok(table.write(out, "  ")?)
+}
+
+fn file_json(opened: &Opened, file: &DataFile) -> serde_json::Value {
+    let values = (0..file.elements).filter_map(|element| {
+        let value = file.value(element)?;
+        let (names, cells) = structure(&value);
+        let value = match &value {
+            Value::Word(word) => json!(word),
+            Value::Long(long) => json!(long),
+            Value::Float(float) if float.is_finite() => json!(float),
+            Value::Words(words) => words.iter().map(|word| word.cast_signed()).collect(),
+            Value::Text(text) => json!(text),
+            _ if !names.is_empty() => names
+                .iter()
+                .zip(cells)
+                .map(|(name, cell)| {
+                    // All cells but the time base are integers.
+                    let value = cell.parse::<i64>().map_or_else(|_| json!(cell), |number| json!(number));
+                    ((*name).to_ascii_uppercase().replace("BASE", "base"), value)
+                })
+                .collect::<serde_json::Map<_, _>>()
+                .into(),
+            other => json!(value_text(other, Radix::Dec)),
+        };
+        Some(json!({"address": element_address(opened, file, element).to_string(), "value": value}))
+    });
+    json!({
+        "number": file.number, "type": file.file_type.to_string(), "name": file.name,
+        "description": file.description, "elements": file.elements, "values": values.collect::<serde_json::Value>(),
+    })
+}

@@ -1,0 +1,94 @@
+//! `rungs export`: files for other tools.
+
+use std::path::{Path, PathBuf};
+
+use analysis::{CrossReference, TimerReport};
+use ladder::Severity;
+
+use super::{Opened, each_project};
+use crate::args::{ExportArguments, Form, Input, Table};
+use crate::output::{Error, Outcome};
+
+pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
+    let into_folder = arguments.output.as_ref().is_some_and(|output| output.is_dir());
+    let many = arguments.files.len() > 1 || arguments.files.iter().any(|path| path.is_dir());
+    if many && arguments.output.is_some() && !into_folder {
+        return Err(Error::Use("several projects: -o must name a folder that exists".to_owned()));
+    }
+    let input = Input { strict: arguments.strict, image: arguments.image, json: false };
+    let mut written = std::collections::HashSet::new();
+    each_project(&arguments.files, &input, |opened, out| {
+        let bytes = exported(opened, arguments)?;
+        if arguments.to == Form::Slc {
+            warn_of_losses(opened);
+        }
+        let target = arguments.output.as_ref().map(|output| target(output, into_folder, opened, arguments));
+        match target {
+            None => out.write_all(&bytes)?,
+            Some(path) => {
+                // Two projects of one name from different folders must not overwrite each other.
+                if (path.exists() && !arguments.force) || !written.insert(path.clone()) {
+                    return Err(Error::Use(format!("{} exists; --force overwrites it", path.display())));
+                }
+                std::fs::write(&path, &bytes)?;
+                writeln!(out, "{}", path.display())?;
+            }
+        }
+        let incomplete = opened.project.diagnostics.iter().any(|d| d.severity == Severity::Error);
+        Ok(if incomplete { Outcome::Unreadable } else { Outcome::Done })
+    })
+}
+
+fn exported(opened: &Opened, arguments: &ExportArguments) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
+    match (arguments.to, arguments.table) {
+        (Form::Json, _) => convert::json::write_json(&opened.project, &mut bytes)?,
+        (Form::Slc, _) => {
+            return Err(Error::Use("SLC text is not written yet".to_owned()));
+        }
+        (Form::Csv, Table::Symbols) => {
+            convert::csv::write_symbols(opened.documentation(), &mut bytes)?;
+        }
+        (Form::Csv, table) => {
+            let xref = CrossReference::build(opened.image(), opened.documentation());
+            match table {
+                Table::Timers => analysis::csv::timers(&TimerReport::build(opened.image(), &xref), &mut bytes)?,
+                _ => analysis::csv::xref(&xref, &mut bytes)?,
+            }
+        }
+    }
+    Ok(bytes)
+}
+
+/// `-o FILE`, or `-o FOLDER` with the project's name and the ending of the form.
+fn target(output: &Path, into_folder: bool, opened: &Opened, arguments: &ExportArguments) -> PathBuf {
+    if !into_folder {
+        return output.to_path_buf();
+    }
+    let ending = match (arguments.to, arguments.table) {
+        (Form::Json, _) => "json",
+        (Form::Slc, _) => "SLC",
+        (Form::Csv, Table::Symbols) => "symbols.csv",
+        (Form::Csv, Table::Timers) => "timers.csv",
+        (Form::Csv, Table::Xref) => "xref.csv",
+    };
+    let stem = opened.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    output.join(format!("{stem}.{ending}"))
+}
+
+/// SLC text has no place for message set-ups and the like: say which rungs lose something.
+fn warn_of_losses(opened: &Opened) {
+    for file in opened.image().ladder_files() {
+        for (number, rung) in file.rungs.iter().enumerate() {
+            for loss in convert::slc::rung::not_in_text(rung) {
+                eprintln!("{}: file {} rung {number}: not in the text: {loss}", opened.path.display(), file.number);
+            }
+        }
+    }
+    if !opened.documentation().entries().is_empty() {
+        eprintln!(
+            "{}: SLC text holds no symbols and descriptions: `rungs export --to csv --table symbols` writes them",
+            opened.path.display()
+        );
+    }
+}

@@ -1,0 +1,276 @@
+//! `rungs info`: what a project is.
+
+use std::io::Write;
+
+use analysis::{Coverage, CrossReference};
+use ladder::{FileType, Image, ProgramFileKind, Severity};
+use serde_json::{Value, json};
+
+use super::{Opened, diagnostics_json, each_project};
+use crate::args::InfoArguments;
+use crate::output::{Columns, Error, Outcome};
+
+pub fn run(arguments: &InfoArguments) -> Result<Outcome, Error> {
+    let mut first = true;
+    each_project(&arguments.files, &arguments.input, |opened, out| {
+        if arguments.input.json {
+            writeln!(out, "{}", describe(opened))?;
+        } else {
+            if !std::mem::take(&mut first) {
+                writeln!(out)?;
+            }
+            print(opened, out)?;
+        }
+        Ok(Outcome::Done)
+    })
+}
+
+fn coverage(opened: &Opened) -> Coverage {
+    let xref = CrossReference::build(opened.image(), opened.documentation());
+    Coverage::build(opened.image(), opened.documentation(), &xref)
+}
+
+/// Rows of an image's data file list: name, number, type, elements, words, description. Unused numbers
+/// are not listed, as on paper.
+fn data_files(image: &Image) -> impl Iterator<Item = &ladder::DataFile> {
+    image.data_files.iter().filter(|file| file.file_type != FileType::Unused)
+}
+
+/// Words as RSLogix counts them in its data file list: O and I with their two force words, the status
+/// file not at all.
+fn listed_words(file: &ladder::DataFile) -> usize {
+    match file.file_type {
+        FileType::O | FileType::I => 3 * usize::from(file.elements),
+        FileType::S => 0,
+        _ => usize::from(file.elements) * usize::from(file.words_per_element),
+    }
+}
+
+fn describe(opened: &Opened) -> Value {
+    let (project, image) = (&opened.project, opened.image());
+    let (source, processor) = (&project.source, &image.processor);
+    let figures = coverage(opened);
+    json!({
+        "file": opened.path.display().to_string(),
+        "sha256": source.sha256,
+        "bytes": source.bytes,
+        "saved_by": source.saved_by,
+        "application": source.application,
+        "saved_at": source.saved_at,
+        "created_at": source.created_at,
+        "images": images(opened),
+        "processor": {
+            "model": processor.model,
+            "catalog": processor.catalog,
+            "name": processor.name,
+            "family": processor.family.id(),
+            "confidence": processor.family_confidence.as_str(),
+            "evidence": processor.evidence,
+            "project_name": processor.project_name,
+            "program_id": processor.program_id.map(|id| format!("{id:x}")),
+            "driver": processor.driver,
+            "route": processor.route,
+        },
+        "protection": {
+            "deny_future_access": processor.deny_future_access,
+            "password_fields_used": processor.password_fields_used,
+        },
+        "memory": image.memory.map(|memory| json!({
+            "instruction_words_used": memory.instruction_words_used,
+            "instruction_words_left": memory.instruction_words_left,
+            "data_words_used": memory.data_words_used,
+            "data_words_left": memory.data_words_left,
+        })),
+        "base_unit": image.io.base_unit,
+        "io_unknown": image.io.unknown,
+        "io": image.io.slots.iter().map(|slot| json!({
+            "slot": slot.number,
+            "catalog": slot.module.catalog,
+            "description": slot.module.description,
+            "identity": slot.module.identity,
+            "confidence": slot.module.confidence.as_str(),
+            "input_words": slot.inputs.words,
+            "input_bits": slot.inputs.bits,
+            "output_words": slot.outputs.words,
+            "output_bits": slot.outputs.bits,
+        })).collect::<Value>(),
+        "channels": image.channels.iter().map(|channel| json!({
+            "number": channel.number,
+            "driver": channel.driver,
+            "settings": channel.settings.iter().map(|setting| json!({
+                "name": setting.name, "value": setting.value, "confidence": setting.confidence.as_str(),
+            })).collect::<Value>(),
+            "unexplained_words": channel.unexplained_words,
+        })).collect::<Value>(),
+        "program_files": image.program_files.iter().filter(|file| file.kind != ProgramFileKind::Unused).map(|file| json!({
+            "number": file.number,
+            "name": file.name,
+            "description": file.description,
+            "type": file.kind.as_str(),
+            "rungs": file.rungs.len(),
+        })).collect::<Value>(),
+        "data_files": data_files(image).map(|file| json!({
+            "number": file.number,
+            "type": file.file_type.to_string(),
+            "name": file.name,
+            "description": file.description,
+            "elements": file.elements,
+            "words": listed_words(file),
+            "forced": file.has_forces(),
+        })).collect::<Value>(),
+        "documentation": {
+            "addresses_used": figures.addresses,
+            "with_symbol": figures.with_symbol,
+            "with_description": figures.with_description,
+            "documented": figures.documented,
+            "rungs": figures.rungs,
+            "rungs_with_comment": figures.with_comment,
+            "entries": opened.documentation().entries().len(),
+        },
+        "revision_notes": project.revision_notes.len(),
+        "diagnostics": diagnostics_json(project),
+    })
+}
+
+fn images(opened: &Opened) -> Vec<&'static str> {
+    let project = &opened.project;
+    let all = [(true, "main"), (project.online.is_some(), "online"), (project.autosave.is_some(), "autosave")];
+    all.into_iter().filter_map(|(present, name)| present.then_some(name)).collect()
+}
+
+fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
+    let (project, image) = (&opened.project, opened.image());
+    let (source, processor) = (&project.source, &image.processor);
+    writeln!(out, "{}", opened.title())?;
+    let mut line = |name: &str, value: &str| {
+        if value.is_empty() { Ok(()) } else { writeln!(out, "  {name:<18}{value}") }
+    };
+    let unknown = || match processor.model {
+        Some(code) => format!("unknown (model code {code}); its bytes are kept"),
+        None => "unknown".to_owned(),
+    };
+    let name = match (&processor.catalog, &processor.name) {
+        (Some(catalog), Some(name)) => {
+            format!("{catalog}  {name}  ({}: {})", processor.family_confidence.as_str(), processor.evidence)
+        }
+        _ => unknown(),
+    };
+    line("Processor", &name)?;
+    line("Processor name", &processor.project_name)?;
+    line("Program ID", &processor.program_id.map(|id| format!("{id:x}")).unwrap_or_default())?;
+    line("Saved by", [source.application.as_str(), source.saved_by.as_str()].join(" ").trim())?;
+    line("Saved at", source.saved_at.as_deref().unwrap_or(""))?;
+    line("Images", &images(opened).join(", "))?;
+    line("Route", &processor.route)?;
+    if let Some(memory) = image.memory {
+        let data = memory.data_words_used.map(|words| format!(", {words} data table words used")).unwrap_or_default();
+        let text = format!(
+            "{} instruction words used{data}, {} instruction words left",
+            memory.instruction_words_used, memory.instruction_words_left
+        );
+        line("Memory", &text)?;
+    }
+    let protection = match (processor.deny_future_access, processor.password_fields_used) {
+        (Some(true), _) => "future access is denied (S:1/14)",
+        (_, Some(true)) => "a field that may hold a password is in use; its content is not shown",
+        (Some(false), Some(false)) => "none found",
+        _ => "unknown",
+    };
+    line("Protection", protection)?;
+    print_io(image, out)?;
+    print_channels(image, out)?;
+    print_program_files(image, out)?;
+    print_data_files(image, out)?;
+    let figures = coverage(opened);
+    writeln!(
+        out,
+        "\n  Documentation: {} of {} addresses have a symbol or description, {} of {} rungs a comment",
+        figures.documented, figures.addresses, figures.with_comment, figures.rungs
+    )?;
+    let worst = project.diagnostics.iter().filter(|d| d.severity >= Severity::Warning).count();
+    if worst > 0 {
+        writeln!(out, "  Reading: {worst} deviations from the known format, reported below")?;
+    }
+    Ok(())
+}
+
+fn print_io(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
+    writeln!(out, "\n  I/O configuration")?;
+    if let Some(unknown) = &image.io.unknown {
+        writeln!(out, "    {unknown}")?;
+    }
+    let mut table = Columns::new(&["Slot", "Module", "Description", "Inputs", "Outputs", "Identity", "Evidence"]);
+    for slot in &image.io.slots {
+        let points = |range: &ladder::IoRange, letter: &str| match range.words {
+            0 => String::new(),
+            words => format!("{letter}:{}.0-{} ({} points)", slot.number, words - 1, range.bits),
+        };
+        table.row([
+            slot.number.to_string(),
+            slot.module.catalog.clone().unwrap_or_else(|| "unknown".to_owned()),
+            slot.module.description.clone(),
+            points(&slot.inputs, "I"),
+            points(&slot.outputs, "O"),
+            slot.module.identity.clone(),
+            slot.module.confidence.as_str().to_owned(),
+        ]);
+    }
+    Ok(table.write(out, "    ")?)
+}
+
+fn print_channels(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
+    for channel in &image.channels {
+        writeln!(out, "\n  Channel {}: {}", channel.number, channel.driver)?;
+        for setting in &channel.settings {
+            let doubt = if setting.confidence >= ladder::Confidence::Proven {
+                String::new()
+            } else {
+                format!("  ({})", setting.confidence.as_str())
+            };
+            writeln!(out, "    {:<38}{}{doubt}", setting.name, setting.value)?;
+        }
+        if channel.unexplained_words > 0 {
+            writeln!(out, "    {} configuration words of unknown meaning", channel.unexplained_words)?;
+        }
+    }
+    Ok(())
+}
+
+fn print_program_files(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
+    writeln!(out, "\n  Program files")?;
+    let mut table = Columns::new(&["Name", "Number", "Type", "Rungs", "Description"]);
+    for file in image.program_files.iter().filter(|file| file.kind != ProgramFileKind::Unused) {
+        let name = if file.number == 0 && file.name.is_empty() { "[SYSTEM]".to_owned() } else { file.name.clone() };
+        table.row([
+            name,
+            file.number.to_string(),
+            file.kind.as_str().to_owned(),
+            file.rungs.len().to_string(),
+            file.description.clone(),
+        ]);
+    }
+    Ok(table.write(out, "    ")?)
+}
+
+fn print_data_files(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
+    writeln!(out, "\n  Data files")?;
+    let mut table = Columns::new(&["Name", "Number", "Type", "Words", "Elements", "Last", "Description"]);
+    for file in data_files(image) {
+        let last = match (file.elements, file.file_type.has_slots()) {
+            (0, _) => String::new(),
+            // Words of O and I are counted through all slots, as printed file lists do.
+            (count, true) => format!("{}:{}", file.file_type, count - 1),
+            (count, false) => ladder::Address::element(file.file_type, file.number, count - 1).to_string(),
+        };
+        table.row([
+            file.name.clone(),
+            file.number.to_string(),
+            file.file_type.to_string(),
+            listed_words(file).to_string(),
+            file.elements.to_string(),
+            last,
+            file.description.clone() + if file.has_forces() { "  [FORCED]" } else { "" },
+        ]);
+    }
+    Ok(table.write(out, "    ")?)
+}

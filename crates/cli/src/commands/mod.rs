@@ -1,0 +1,170 @@
+//! The commands: each opens projects, asks one library, prints.
+
+mod build;
+mod data;
+mod export;
+mod info;
+mod show;
+mod timers;
+mod verify;
+mod xref;
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use ladder::{Documentation, Image, Project, Severity};
+use rss::Mode;
+
+use crate::args::{Arguments, Command, ImageChoice, Input};
+use crate::files;
+use crate::output::{Error, Outcome};
+
+/// Runs the command that was asked for.
+pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
+    match arguments.command {
+        Command::Info(arguments) => info::run(&arguments),
+        Command::Show(arguments) => show::run(&arguments),
+        Command::Data(arguments) => data::run(&arguments),
+        Command::Timers(arguments) => timers::run(&arguments),
+        Command::Xref(arguments) => xref::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
+        Command::Build(arguments) => build::run(&arguments),
+    }
+}
+
+/// A project with the image that was asked for.
+struct Opened {
+    path: PathBuf,
+    project: Project,
+    choice: ImageChoice,
+}
+
+impl Opened {
+    fn image(&self) -> &Image {
+        match self.choice {
+            ImageChoice::Main => &self.project.main,
+            // `each_project` has made sure that the image is there.
+            ImageChoice::Online => self.project.online.as_ref().unwrap_or(&self.project.main),
+            ImageChoice::Autosave => self.project.autosave.as_ref().unwrap_or(&self.project.main),
+        }
+    }
+
+    /// The documentation shown with the image: the online image has none of its own.
+    fn documentation(&self) -> &Documentation {
+        match self.choice {
+            ImageChoice::Online => &self.project.main.documentation,
+            _ => &self.image().documentation,
+        }
+    }
+
+    /// `conveyor.RSS`, with the image when it is not the main one.
+    fn title(&self) -> String {
+        let name = self.path.display();
+        match self.choice {
+            ImageChoice::Main => name.to_string(),
+            ImageChoice::Online => format!("{name} (online image)"),
+            ImageChoice::Autosave => format!("{name} (autosave image)"),
+        }
+    }
+}
+
+/// Reads a file whole, up to a size no project comes near.
+fn read_file(path: &Path) -> Result<Vec<u8>, String> {
+    const LIMIT: u64 = 256 << 20;
+    let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
+    if size > LIMIT {
+        return Err(format!("expected a project of at most {LIMIT} bytes, found {size}"));
+    }
+    std::fs::read(path).map_err(|error| error.to_string())
+}
+
+fn open(path: &Path, mode: Mode) -> Result<Project, String> {
+    let bytes = read_file(path)?;
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    convert::open(&bytes, &name, mode).map_err(|error| error.to_string())
+}
+
+fn mode(strict: bool) -> Mode {
+    if strict { Mode::Strict } else { Mode::Permissive }
+}
+
+/// Opens one project after the other and hands each to `work`. What cannot be read is reported and
+/// the rest goes on; so do findings of the reader.
+fn each_project(
+    paths: &[PathBuf],
+    input: &Input,
+    mut work: impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
+) -> Result<Outcome, Error> {
+    let files = files::expand(paths).map_err(Error::Use)?;
+    let stdout = std::io::stdout();
+    let bar = files::progress(files.len(), stdout.is_terminal());
+    let mut out = std::io::BufWriter::new(stdout.lock());
+    let mut outcome = Outcome::Done;
+    for path in files {
+        bar.set_message(path.display().to_string());
+        let result = match open(&path, mode(input.strict)) {
+            Ok(project) => one_project(Opened { path, project, choice: input.image }, input.json, &mut out, &mut work)?,
+            Err(why) => {
+                if input.json {
+                    let line = serde_json::json!({"file": path.display().to_string(), "error": why});
+                    writeln!(out, "{line}")?;
+                }
+                bar.suspend(|| eprintln!("{}: {why}", path.display()));
+                Outcome::Unreadable
+            }
+        };
+        outcome = outcome.max(result);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    out.flush()?;
+    Ok(outcome)
+}
+
+fn one_project(
+    opened: Opened,
+    json: bool,
+    out: &mut impl Write,
+    work: &mut impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
+) -> Result<Outcome, Error> {
+    let missing = match opened.choice {
+        ImageChoice::Online => opened.project.online.is_none(),
+        ImageChoice::Autosave => opened.project.autosave.is_none(),
+        ImageChoice::Main => false,
+    };
+    if missing {
+        eprintln!("{}: the project holds no such image", opened.path.display());
+        return Ok(Outcome::Finding);
+    }
+    let outcome = work(&opened, out)?;
+    if json {
+        return Ok(outcome);
+    }
+    // Never let partial data pass for the whole.
+    out.flush()?;
+    for diagnostic in opened.project.diagnostics.iter().filter(|d| d.severity >= Severity::Warning).take(20) {
+        eprintln!(
+            "{}: {}: {}: {}",
+            opened.path.display(),
+            diagnostic.severity.as_str(),
+            diagnostic.place,
+            diagnostic.message
+        );
+    }
+    let more = opened.project.diagnostics.iter().filter(|d| d.severity >= Severity::Warning).count().saturating_sub(20);
+    if more > 0 {
+        eprintln!("{}: {more} further findings, see `rungs info --json`", opened.path.display());
+    }
+    Ok(outcome)
+}
+
+fn diagnostics_json(project: &Project) -> serde_json::Value {
+    let one = |d: &ladder::Diagnostic| serde_json::json!({"severity": d.severity.as_str(), "place": d.place, "message": d.message});
+    project.diagnostics.iter().map(one).collect()
+}
+
+/// `first line / second line` of a description, for one table cell.
+fn one_line(lines: &[String]) -> String {
+    lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}

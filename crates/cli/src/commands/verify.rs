@@ -1,0 +1,148 @@
+//! `rungs verify`: every byte accounted for.
+
+use std::io::{IsTerminal, Write};
+
+use convert::verify::{CodeCheck, CodeDifference, check_code};
+use serde_json::{Value, json};
+
+use super::{mode, read_file};
+use crate::args::VerifyArguments;
+use crate::files;
+use crate::output::{Columns, Error, Outcome};
+
+pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
+    let paths = files::expand(&arguments.files).map_err(Error::Use)?;
+    let stdout = std::io::stdout();
+    let bar = files::progress(paths.len(), stdout.is_terminal());
+    let mut out = std::io::BufWriter::new(stdout.lock());
+    let mut outcome = Outcome::Done;
+    for path in &paths {
+        let name = path.display().to_string();
+        bar.set_message(name.clone());
+        let read = read_file(path)
+            .and_then(|bytes| rss::Project::read(&bytes, mode(arguments.strict)).map_err(|error| error.to_string()));
+        let result = match read {
+            Ok(project) => {
+                let verification = rss::verify::verify(&project);
+                let code = check_code(&project);
+                if arguments.json {
+                    writeln!(out, "{}", line(&name, &verification, &code))?;
+                } else {
+                    print(&name, &verification, &code, &mut out)?;
+                }
+                judge(&verification, &code)
+            }
+            Err(why) => {
+                if arguments.json {
+                    writeln!(out, "{}", json!({"file": name, "error": why}))?;
+                }
+                bar.suspend(|| eprintln!("{name}: {why}"));
+                Outcome::Unreadable
+            }
+        };
+        outcome = outcome.max(result);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    out.flush()?;
+    Ok(outcome)
+}
+
+/// A stream that could not be read to its end is unreadable input; bytes or code that differ are a
+/// finding.
+fn judge(verification: &rss::verify::Verification, code: &CodeCheck) -> Outcome {
+    if verification.streams.iter().any(|stream| stream.error.is_some()) {
+        Outcome::Unreadable
+    } else if !verification.roundtrip || !code.differs.is_empty() {
+        Outcome::Finding
+    } else {
+        Outcome::Done
+    }
+}
+
+fn line(name: &str, verification: &rss::verify::Verification, code: &CodeCheck) -> Value {
+    let streams = verification.streams.iter().map(|stream| {
+        let mut value = json!({
+            "stream": stream.stream,
+            "bytes": stream.bytes,
+            "understood": stream.understood,
+            "identical": stream.identical,
+        });
+        if let Some(error) = &stream.error {
+            value["error"] = error.to_string().into();
+        }
+        if !stream.deviations.is_empty() {
+            value["deviations"] = stream.deviations.iter().map(ToString::to_string).collect();
+        }
+        value
+    });
+    json!({
+        "file": name,
+        "streams": streams.collect::<Value>(),
+        "roundtrip": verification.roundtrip,
+        "code_agrees": code.agrees,
+        "code_differs": code.differs.iter().map(difference).collect::<Value>(),
+        "code_not_compiled": code.not_compiled,
+        "code_not_comparable": code.not_comparable.iter().map(difference).collect::<Value>(),
+    })
+}
+
+fn difference(difference: &CodeDifference) -> Value {
+    json!({
+        "stream": difference.stream,
+        "file": difference.file,
+        "rung": difference.rung,
+        "instruction": difference.instruction,
+        "text": difference.text,
+        "code": difference.code,
+    })
+}
+
+fn print(
+    name: &str,
+    verification: &rss::verify::Verification,
+    code: &CodeCheck,
+    out: &mut impl Write,
+) -> Result<(), Error> {
+    writeln!(out, "{name}")?;
+    let mut table = Columns::new(&["Stream", "Bytes", "Understood", "Rewrite"]);
+    let (mut bytes, mut understood) = (0, 0);
+    for stream in &verification.streams {
+        bytes += stream.bytes;
+        understood += stream.understood;
+        let rewrite = if stream.identical { "identical" } else { "DIFFERS" };
+        // The first character of the summary stream's name is a control character.
+        let stream_name = stream.stream.escape_debug().to_string();
+        table.row([stream_name, stream.bytes.to_string(), stream.understood.to_string(), rewrite.to_owned()]);
+    }
+    table.write(out, "  ")?;
+    writeln!(out, "  {understood} of {bytes} bytes understood; the rest is carried unchanged")?;
+    let whole = if verification.roundtrip { "reads back equal, stream by stream" } else { "DOES NOT read back equal" };
+    writeln!(out, "  Written to a new file it {whole}")?;
+    writeln!(
+        out,
+        "  Compiled code agrees with the operands of {} instructions, differs for {}; {} never compiled, {} not comparable",
+        code.agrees,
+        code.differs.len(),
+        code.not_compiled,
+        code.not_comparable.len()
+    )?;
+    for (what, list) in [("differs", &code.differs), ("not comparable", &code.not_comparable)] {
+        for found in list {
+            writeln!(
+                out,
+                "    {what}: {}, file {} rung {}: {} {} -- code: {}",
+                found.stream, found.file, found.rung, found.instruction, found.text, found.code
+            )?;
+        }
+    }
+    for stream in &verification.streams {
+        if let Some(error) = &stream.error {
+            writeln!(out, "  ERROR {error}")?;
+        }
+        for deviation in &stream.deviations {
+            writeln!(out, "  deviation: {deviation}")?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,286 @@
+//! `rungs xref`: who reads, who writes.
+
+use std::io::Write;
+
+use analysis::{Access, CallGraph, CrossReference, Finding, Found, Group, Target};
+use ladder::Address;
+use serde_json::{Value, json};
+
+use super::{Opened, each_project, one_line};
+use crate::args::XrefArguments;
+use crate::files;
+use crate::output::{Columns, Error, Outcome};
+
+pub fn run(arguments: &XrefArguments) -> Result<Outcome, Error> {
+    let (paths, wanted) = files::split(&arguments.files);
+    each_project(&paths, &arguments.input, |opened, out| {
+        let xref = CrossReference::build(opened.image(), opened.documentation());
+        let calls = CallGraph::build(opened.image(), opened.documentation());
+        let mut report = Report {
+            opened,
+            xref: &xref,
+            calls: &calls,
+            groups: Vec::new(),
+            calls_asked: Vec::new(),
+            unknown: Vec::new(),
+        };
+        if wanted.is_empty() {
+            report.groups = xref.all();
+        } else {
+            wanted.iter().for_each(|text| report.find(text));
+        }
+        if arguments.input.json {
+            writeln!(out, "{}", report.describe(arguments.findings, wanted.is_empty()))?;
+        } else {
+            report.print(arguments.findings, wanted.is_empty(), out)?;
+        }
+        for text in &report.unknown {
+            eprintln!("{}: `{text}` is no address, symbol or data file of this program", opened.path.display());
+        }
+        Ok(if report.unknown.is_empty() { Outcome::Done } else { Outcome::Finding })
+    })
+}
+
+struct Report<'r> {
+    opened: &'r Opened,
+    xref: &'r CrossReference<'r>,
+    calls: &'r CallGraph,
+    groups: Vec<Group<'r>>,
+    calls_asked: Vec<String>,
+    unknown: Vec<String>,
+}
+
+impl Report<'_> {
+    fn find(&mut self, text: &str) {
+        match self.xref.find(text) {
+            Some(Found::Address(group)) => self.groups.push(group),
+            Some(Found::File { groups, .. }) => self.groups.extend(groups),
+            Some(Found::ProgramFile(number)) => {
+                let callers = self.calls.file(number).map(|file| {
+                    let rungs: Vec<String> = file.called_by.iter().map(ToString::to_string).collect();
+                    let entries: Vec<String> = file.entries.iter().map(|e| e.kind.as_str().to_owned()).collect();
+                    format!("U:{number}  called in {}{}", none_if_empty(&rungs), suffix(&entries))
+                });
+                self.calls_asked.push(callers.unwrap_or_else(|| format!("U:{number}  no such ladder file")));
+            }
+            Some(Found::Label { file, number }) => {
+                let label = self.calls.labels.iter().find(|label| label.file == file && label.number == number);
+                let text = label.map(|label| {
+                    let list = |places: &[analysis::Location]| {
+                        none_if_empty(&places.iter().map(ToString::to_string).collect::<Vec<_>>())
+                    };
+                    format!("Q{file}:{number}  label in {}, jumps in {}", list(&label.defined), list(&label.jumps))
+                });
+                self.calls_asked.push(text.unwrap_or_else(|| format!("Q{file}:{number}  no such label")));
+            }
+            None => self.unknown.push(text.to_owned()),
+        }
+    }
+
+    fn documentation(&self, address: &Address) -> (Option<String>, String) {
+        let shown = self.opened.documentation().shown(&address.into(), "");
+        (shown.symbol, one_line(&shown.description))
+    }
+
+    fn describe(&self, only_findings: bool, whole: bool) -> Value {
+        let access = |access: &Access<'_>| {
+            json!({
+                "file": access.location.file, "rung": access.location.rung, "mnemonic": access.mnemonic.to_string(),
+                "operand": access.operand, "as": access.address.to_string(), "symbol": access.symbol,
+                "role": access.role.as_str(), "certainty": access.certainty.as_str(), "level": access.level.as_str(),
+                "through": access.through.as_str(), "touches": access.touched,
+            })
+        };
+        let group = |group: &Group<'_>| {
+            let (symbol, description) = self.documentation(&group.address);
+            json!({
+                "address": group.address.to_string(), "symbol": symbol, "description": description,
+                "module": self.module(&group.address),
+                "accesses": group.accesses.iter().map(access).collect::<Value>(),
+            })
+        };
+        let mut value = json!({"file": self.opened.path.display().to_string()});
+        if !only_findings {
+            value["addresses"] = self.groups.iter().map(group).collect();
+            value["calls"] = self
+                .calls
+                .calls
+                .iter()
+                .map(|call| {
+                    json!({
+                        "file": call.location.file, "rung": call.location.rung, "target": target(&call.target),
+                    })
+                })
+                .collect();
+        }
+        if whole {
+            value["findings"] = self.xref.findings().iter().map(finding).collect();
+            value["never_called"] = self.without_caller().map(|file| file.number).collect();
+            value["entries"] = self
+                .calls
+                .files
+                .iter()
+                .flat_map(|file| {
+                    file.entries.iter().map(|entry| {
+                        json!({
+                            "file": file.number, "runs_as": entry.kind.as_str(), "source": entry.source,
+                        })
+                    })
+                })
+                .collect();
+            value["unresolved"] = self
+                .xref
+                .unresolved()
+                .iter()
+                .map(|it| {
+                    json!({
+                        "file": it.location.file, "rung": it.location.rung, "mnemonic": it.mnemonic.to_string(),
+                        "operand": it.operand, "text": it.text, "why": it.kind.as_str(),
+                    })
+                })
+                .collect();
+            value["notes"] = self
+                .xref
+                .notes()
+                .iter()
+                .map(|note| {
+                    json!({
+                        "note": note.as_str(), "rung": note.location().map(|location| location.to_string()),
+                    })
+                })
+                .collect();
+        }
+        value
+    }
+
+    /// Ladder files no JSR names, the main program aside.
+    fn without_caller(&self) -> impl Iterator<Item = &analysis::CalledFile> {
+        self.calls.files.iter().filter(|file| file.called_by.is_empty() && file.number != 2)
+    }
+
+    /// Module and point of an I/O address.
+    fn module(&self, address: &Address) -> Option<String> {
+        let point = self.opened.image().io.resolve(address)?;
+        let module = &point.slot.module;
+        let name = module.catalog.as_deref().unwrap_or("unknown module");
+        let bit = point.bit.map(|bit| format!(" point {}", point.word * 16 + bit)).unwrap_or_default();
+        let beyond = if point.in_range { "" } else { " (the module has no such point)" };
+        Some(format!("slot {} {name}, word {}{bit}{beyond}", point.slot.number, point.word))
+    }
+
+    fn print(&self, only_findings: bool, whole: bool, out: &mut dyn Write) -> Result<(), Error> {
+        writeln!(out, "{}", self.opened.title())?;
+        if !only_findings {
+            for group in &self.groups {
+                self.print_group(group, out)?;
+            }
+            for line in &self.calls_asked {
+                writeln!(out, "{line}")?;
+            }
+        }
+        if whole {
+            self.print_findings(out)?;
+        }
+        Ok(())
+    }
+
+    fn print_group(&self, group: &Group<'_>, out: &mut dyn Write) -> Result<(), Error> {
+        let (symbol, description) = self.documentation(&group.address);
+        let parts = [symbol.unwrap_or_default(), description, self.module(&group.address).unwrap_or_default()];
+        let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        writeln!(out, "{}  {}", group.address, parts.join("  -  "))?;
+        let mut table = Columns::new(&["Rung", "Does", "Instruction", "Operand", "As", "Touches", ""]);
+        for access in &group.accesses {
+            let may = match access.certainty {
+                analysis::Certainty::May => format!("may {}", access.role.as_str()),
+                analysis::Certainty::Definite => access.role.as_str().to_owned(),
+            };
+            let through = match access.through {
+                analysis::Through::Operand => String::new(),
+                other => other.as_str().to_owned(),
+            };
+            table.row([
+                access.location.to_string(),
+                may,
+                access.mnemonic.to_string(),
+                access.operand.to_owned(),
+                access.symbol.map_or_else(|| access.address.to_string(), str::to_owned),
+                access.touched.clone(),
+                through,
+            ]);
+        }
+        if table.is_empty() {
+            writeln!(out, "    no instruction reads or writes it")?;
+        } else {
+            table.write(out, "    ")?;
+        }
+        Ok(())
+    }
+
+    fn print_findings(&self, out: &mut dyn Write) -> Result<(), Error> {
+        let findings: Vec<Finding> = self.xref.findings();
+        let mut table = Columns::new(&["Finding", "Address", "Symbol", "Rungs"]);
+        // What is normal for its kind of address (an input nobody writes) is in the JSON only.
+        for finding in findings.iter().filter(|finding| finding.expected.is_none()) {
+            let places: Vec<String> = finding.locations.iter().map(ToString::to_string).collect();
+            let (symbol, _) = self.documentation(&finding.address);
+            table.row([
+                finding.kind.as_str().to_owned(),
+                finding.address.to_string(),
+                symbol.unwrap_or_default(),
+                places.join(", "),
+            ]);
+        }
+        if !table.is_empty() {
+            writeln!(out, "\nWorth a look")?;
+            table.write(out, "  ")?;
+        }
+        let mut first = true;
+        for file in self.without_caller() {
+            if std::mem::take(&mut first) {
+                writeln!(out, "\nProgram files that no JSR calls")?;
+            }
+            let entries: Vec<String> =
+                file.entries.iter().map(|e| format!("{} {}", e.kind.as_str(), e.source)).collect();
+            let why = if entries.is_empty() {
+                "nothing runs it".to_owned()
+            } else {
+                format!("runs as {}", entries.join(", "))
+            };
+            writeln!(out, "  {} {}  {why}", file.number, file.name)?;
+        }
+        for it in self.xref.unresolved() {
+            writeln!(out, "{}  {} {}: {} ({})", it.location, it.mnemonic, it.operand, it.text, it.kind.as_str())?;
+        }
+        for note in self.xref.notes() {
+            let place = note.location().map(|location| format!("{location}  ")).unwrap_or_default();
+            writeln!(out, "{place}{}", note.as_str())?;
+        }
+        Ok(())
+    }
+}
+
+fn finding(finding: &Finding) -> Value {
+    json!({
+        "finding": finding.kind.as_str(),
+        "address": finding.address.to_string(),
+        "expected": finding.expected.map(analysis::Reason::as_str),
+        "rungs": finding.locations.iter().map(ToString::to_string).collect::<Value>(),
+    })
+}
+
+fn target(target: &Target) -> Value {
+    match target {
+        Target::File(number) => json!(number),
+        Target::Missing(number) => json!({"missing": number}),
+        Target::Unknown(text) => json!({"unknown": text}),
+    }
+}
+
+fn none_if_empty(list: &[String]) -> String {
+    if list.is_empty() { "no rung".to_owned() } else { list.join(", ") }
+}
+
+fn suffix(entries: &[String]) -> String {
+    if entries.is_empty() { String::new() } else { format!("; {}", entries.join(", ")) }
+}

@@ -1,0 +1,93 @@
+//! Which files to work on: several paths, folders, and paths mixed with addresses.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Endings of the files picked up from folders. A file named on the command line is read whatever
+/// its ending: its content decides.
+const ENDINGS: [&str; 2] = ["rss", "slc"];
+
+/// Files in the order given, folders replaced by the projects below them in order of name.
+///
+/// # Errors
+/// A folder that cannot be listed, or one that holds no project.
+pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let before = files.len();
+        collect(path, &mut files, 0)?;
+        if files.len() == before {
+            return Err(format!("{}: no .RSS or .SLC file in this folder", path.display()));
+        }
+    }
+    Ok(files)
+}
+
+/// Links to folders are not followed, so the walk ends; the bound is for absurd nesting.
+const MAX_DEPTH: usize = 64;
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>, depth: usize) -> Result<(), String> {
+    let list = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut entries: Vec<_> = list.filter_map(Result::ok).collect();
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let path = entry.path();
+        let Ok(kind) = entry.file_type() else { continue };
+        if kind.is_dir() && depth < MAX_DEPTH {
+            collect(&path, files, depth + 1)?;
+        } else if path.is_file() && has_project_ending(&path) {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn has_project_ending(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
+    ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+/// Splits `FILE [ADDRESS ..]`: the first word is a file, later ones are if such a path exists.
+pub fn split(words: &[String]) -> (Vec<PathBuf>, Vec<String>) {
+    let mut files = Vec::new();
+    let mut addresses = Vec::new();
+    for word in words {
+        if files.is_empty() || Path::new(word).exists() {
+            files.push(PathBuf::from(word));
+        } else {
+            addresses.push(word.clone());
+        }
+    }
+    (files, addresses)
+}
+
+/// A bar for work over many files: on a terminal only, and not when results are printed there too.
+pub fn progress(files: usize, results_on_terminal: bool) -> ProgressBar {
+    if files < 2 || results_on_terminal || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(u64::try_from(files).unwrap_or(u64::MAX));
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_word_is_a_file_and_addresses_follow() {
+        let words = ["missing.RSS", "N7:0", "START_PB"].map(str::to_owned);
+        let (files, addresses) = split(&words);
+        assert_eq!(files, [PathBuf::from("missing.RSS")]);
+        assert_eq!(addresses, ["N7:0", "START_PB"]);
+    }
+}

@@ -1,0 +1,131 @@
+//! What commands share about ending and printing: outcomes, errors, plain-text tables.
+
+use std::fmt;
+use std::io;
+use std::process::ExitCode;
+
+/// How a command that ran to its end came out; the worst over all files counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Outcome {
+    /// Done, nothing to complain about.
+    Done,
+    /// A difference, a failed expectation, a finding at error level.
+    Finding,
+    /// At least one input could not be read.
+    Unreadable,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> ExitCode {
+        ExitCode::from(match outcome {
+            Outcome::Done => 0,
+            Outcome::Finding => 1,
+            Outcome::Unreadable => 3,
+        })
+    }
+}
+
+/// What stops a command.
+#[derive(Debug)]
+pub enum Error {
+    /// Arguments that cannot be meant, or a place that cannot be written.
+    Use(String),
+    /// Standard output went away or a file could not be written.
+    Write(io::Error),
+}
+
+impl Error {
+    /// 2 for bad use, 1 for output that could not be written.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Error::Use(_) => 2,
+            Error::Write(_) => 1,
+        }
+    }
+
+    /// The reader of standard output closed it.
+    pub fn is_broken_pipe(&self) -> bool {
+        matches!(self, Error::Write(error) if error.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Use(why) => f.write_str(why),
+            Error::Write(error) => write!(f, "cannot write: {error}"),
+        }
+    }
+}
+
+impl From<io::Error> for Error {
+    fn from(error: io::Error) -> Self {
+        Error::Write(error)
+    }
+}
+
+/// A table with left-aligned columns as wide as their widest cell; columns whose every cell below
+/// the heading is a number stand right.
+pub struct Columns {
+    rows: Vec<Vec<String>>,
+}
+
+impl Columns {
+    /// A table with these headings.
+    pub fn new(headings: &[&str]) -> Columns {
+        Columns { rows: vec![headings.iter().map(|heading| (*heading).to_owned()).collect()] }
+    }
+
+    /// Adds a row; missing cells are empty.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// No row below the headings.
+    pub fn is_empty(&self) -> bool {
+        self.rows.len() < 2
+    }
+
+    /// Writes the table, each line led by `indent`.
+    pub fn write(&self, out: &mut (impl io::Write + ?Sized), indent: &str) -> io::Result<()> {
+        let count = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let cell = |row: &Vec<String>, column: usize| row.get(column).cloned().unwrap_or_default();
+        let width = |column| self.rows.iter().map(|row| cell(row, column).chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..count).map(width).collect();
+        let is_number =
+            |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit() || matches!(c, '-' | '.'));
+        let right = |column| {
+            let mut cells =
+                self.rows.iter().skip(1).map(|row| cell(row, column)).filter(|text| !text.is_empty()).peekable();
+            cells.peek().is_some() && cells.all(|text| is_number(&text))
+        };
+        let right: Vec<bool> = (0..count).map(right).collect();
+        for row in &self.rows {
+            let mut line = String::from(indent);
+            for (column, (width, right)) in widths.iter().zip(&right).enumerate() {
+                let text = cell(row, column);
+                let space = " ".repeat(width - text.chars().count());
+                line.push_str(&if *right { space + &text } else { text + &space });
+                line.push_str("  ");
+            }
+            writeln!(out, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_right_and_lines_end_clean() {
+        let mut table = Columns::new(&["Name", "Rungs", "Description"]);
+        table.row(["MAIN".into(), "10".into(), String::new()]);
+        table.row(["A".into(), "5".into(), "x".into()]);
+        let mut out = Vec::new();
+        table.write(&mut out, "  ").expect("a vector takes all");
+        let text = String::from_utf8(out).expect("text");
+        assert_eq!(text, "  Name  Rungs  Description\n  MAIN     10\n  A         5  x\n");
+    }
+}

@@ -1,0 +1,75 @@
+//! Opens a project of any form by its content.
+
+use std::fmt;
+
+use ladder::{Project, Source};
+use rss::Mode;
+use sha2::{Digest, Sha256};
+
+/// Why a file is no project.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// Not a project file, or one too damaged to read.
+    File(rss::Error),
+    /// A JSON document that is no project.
+    Json(crate::json::JsonError),
+}
+
+impl fmt::Display for OpenError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            OpenError::File(error) => error.fmt(f),
+            OpenError::Json(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for OpenError {}
+
+/// Opens an `.RSS` file, SLC text or a JSON project; the content decides, never the name.
+/// `file_name` is only recorded.
+///
+/// # Errors
+/// What the file is instead, or where it is damaged. In [`Mode::Strict`] the first deviation.
+pub fn open(bytes: &[u8], file_name: &str, mode: Mode) -> Result<Project, OpenError> {
+    let source = Source {
+        file: file_name.to_owned(),
+        sha256: hex(&Sha256::digest(bytes)),
+        bytes: u64::try_from(bytes.len()).unwrap_or(u64::MAX),
+        ..Source::default()
+    };
+    match rss::Project::read(bytes, mode) {
+        Ok(file) => strict(crate::from_rss::project(&file, source), mode),
+        Err(error) => match json_text(bytes) {
+            Some(text) => crate::json::from_json(text).map_err(OpenError::Json),
+            None => Err(OpenError::File(error)),
+        },
+    }
+}
+
+/// A document that opens with `{` and names our schema near its beginning.
+fn json_text(bytes: &[u8]) -> Option<&str> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    let head: String = text.chars().take(400).collect();
+    (head.trim_start().starts_with('{') && head.contains("\"rungs.project/")).then_some(text)
+}
+
+fn strict(project: Project, mode: Mode) -> Result<Project, OpenError> {
+    let worst = project.diagnostics.iter().find(|d| d.severity >= ladder::Severity::Warning);
+    match worst {
+        Some(first) if mode == Mode::Strict => Err(OpenError::File(rss::Error::from(rss::Deviation {
+            stream: String::new(),
+            space: rss::Space::File,
+            offset: 0,
+            record: first.place.clone(),
+            expected: "a project without deviation (strict reading)".to_owned(),
+            found: first.message.clone(),
+        }))),
+        _ => Ok(project),
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
