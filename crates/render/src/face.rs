@@ -169,21 +169,34 @@ impl Source<'_> {
     }
 
     fn symbol(&self, sign: Sign, operand: &Operand) -> Body {
-        let text = self.text(operand);
         let mut below = Vec::new();
-        let above = match split_bit(&text).filter(|_| self.style.split_bits) {
-            None => text,
+        let above = match self.split(operand) {
             Some((element, bit)) => {
-                below.push((Role::Address, bit.to_owned()));
-                let in_slot = operand.address().is_some_and(|a| is_io(a) && a.word == Some(0));
-                let element = if in_slot { element.strip_suffix(".0").unwrap_or(element) } else { element };
-                element.to_owned()
+                below.push((Role::Address, bit));
+                element
             }
+            None => self.text(operand),
         };
         if let Some(address) = operand.address() {
             below.extend(self.module(address).into_iter().map(|(role, text)| (role, clean(&text).into_owned())));
         }
         Body::Symbol { sign, above, below }
+    }
+
+    /// What stands above and below the sign of a bit; `None` where the whole address stands above.
+    fn split(&self, operand: &Operand) -> Option<(String, String)> {
+        if !self.style.split_bits {
+            return None;
+        }
+        let address = operand.address().filter(|address| is_io(address));
+        if let Some((slot, bit)) = address.and_then(slot_bit) {
+            return Some((slot, bit));
+        }
+        let text = self.text(operand);
+        let (element, bit) = split_bit(&text)?;
+        // Word 0 of a slot goes without saying, also before a bit that is indirect.
+        let element = address.and_then(|_| element.strip_suffix(".0")).unwrap_or(element);
+        Some((element.to_owned(), bit.to_owned()))
     }
 
     /// The module under an I/O bit.
@@ -300,6 +313,14 @@ fn number_text(value: &Value) -> Option<String> {
 
 fn is_io(address: &Address) -> bool {
     matches!(address.file_type, FileType::I | FileType::O)
+}
+
+/// Slot and bit of a direct I/O bit the way paper counts them: through all words of the slot, so that
+/// `O:0.2/5` is `O:0` above and 37 below.
+fn slot_bit(address: &Address) -> Option<(String, String)> {
+    let bit = u32::from(address.bit.as_ref()?.number()?) + 16 * u32::from(address.word?);
+    let slot = Address { word: None, bit: None, ..address.clone() };
+    Some((slot.to_string(), bit.to_string()))
 }
 
 /// Element and bit of an address text, cut at the last slash outside brackets.

@@ -131,6 +131,16 @@ fn branches_nest() {
 }
 
 #[test]
+fn bits_of_io_count_through_the_words_of_their_slot() {
+    let series = vec![ins("XIC", "I:1.1/3"), ins("XIO", "I:0.1/[N7:0]"), ins("EQU", "I:3.1 1"), ins("OTE", "O:0.2/5")];
+    let text = plain(series, &narrow());
+    let words: Vec<&str> = text.split(|c: char| c.is_whitespace() || c == '│').filter(|w| !w.is_empty()).collect();
+    for (wanted, times) in [("I:1", 1), ("19", 1), ("O:0", 1), ("37", 1), ("I:0.1", 1), ("[N7:0]", 1), ("I:3.1", 1)] {
+        assert_eq!(words.iter().filter(|word| **word == wanted).count(), times, "{wanted} in\n{text}");
+    }
+}
+
+#[test]
 fn unknown_instructions_show_all_they_hold() {
     let unknown = Instruction::new(Mnemonic::Unknown(0x4D), vec![Operand::parse("N7:0"), Operand::parse("#N9:0")]);
     let mut message =
