@@ -1,10 +1,12 @@
 //! Whole `.SLC` files: layout, what is kept of lines that fit nothing, and hostile text.
 
-use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use convert::slc::file::{Data, Ladder, Section, SlcFile, TitleBlock, read};
 use proptest::prelude::*;
+
+mod slc_support;
+use slc_support::corpus;
 
 /// A file of our own in the layout RSLogix writes.
 const SAMPLE: &str = "\
@@ -170,16 +172,6 @@ no mask
     }
     let again = read(&written);
     assert_eq!(again.write(), written);
-}
-
-fn corpus() -> Option<PathBuf> {
-    let root = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    if root.is_dir() {
-        return Some(root);
-    }
-    println!("skipped: corpus not present");
-    None
 }
 
 #[test]
