@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Endings of the files picked up from folders. A file named on the command line is read whatever
-/// its ending: its content decides.
-const ENDINGS: [&str; 2] = ["rss", "slc"];
+/// Endings of project files.
+pub const PROJECTS: &[&str] = &["rss"];
+/// Endings of project files and of SLC text, which holds a program too.
+pub const PROGRAMS: &[&str] = &["rss", "slc"];
 
-/// Files in the order given, folders replaced by the projects below them in order of name.
+/// Files in the order given, folders replaced by the files below them that have one of the endings, in
+/// order of name. A file named on the command line is taken whatever its ending: its content decides.
 ///
 /// # Errors
 /// A folder that cannot be listed, or one that holds no project.
-pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+pub fn expand(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -21,9 +23,9 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
             continue;
         }
         let before = files.len();
-        collect(path, &mut files, 0)?;
+        collect(path, endings, &mut files, 0)?;
         if files.len() == before {
-            return Err(format!("{}: no .RSS or .SLC file in this folder", path.display()));
+            return Err(format!("{}: no file with the ending {} in this folder", path.display(), endings.join(" or ")));
         }
     }
     Ok(files)
@@ -32,7 +34,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
 /// Links to folders are not followed, so the walk ends; the bound is for absurd nesting.
 const MAX_DEPTH: usize = 64;
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>, depth: usize) -> Result<(), String> {
+fn collect(folder: &Path, endings: &[&str], files: &mut Vec<PathBuf>, depth: usize) -> Result<(), String> {
     let list = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut entries: Vec<_> = list.filter_map(Result::ok).collect();
     entries.sort_by_key(std::fs::DirEntry::file_name);
@@ -40,17 +42,17 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>, depth: usize) -> Result<(), 
         let path = entry.path();
         let Ok(kind) = entry.file_type() else { continue };
         if kind.is_dir() && depth < MAX_DEPTH {
-            collect(&path, files, depth + 1)?;
-        } else if path.is_file() && has_project_ending(&path) {
+            collect(&path, endings, files, depth + 1)?;
+        } else if path.is_file() && has_ending(&path, endings) {
             files.push(path);
         }
     }
     Ok(())
 }
 
-fn has_project_ending(path: &Path) -> bool {
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
-    ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known))
+    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
 /// Splits `FILE [ADDRESS ..]`: the first word is a file, later ones are if such a path exists.

@@ -11,7 +11,7 @@ use crate::files;
 use crate::output::{Columns, Error, Outcome};
 
 pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
-    let paths = files::expand(&arguments.files).map_err(Error::Use)?;
+    let paths = files::expand(&arguments.files, files::PROJECTS).map_err(Error::Use)?;
     let stdout = std::io::stdout();
     let bar = files::progress(paths.len(), stdout.is_terminal());
     let mut out = std::io::BufWriter::new(stdout.lock());

@@ -38,7 +38,8 @@ pub fn project(file: &rss::Project, source: Source) -> Project {
 /// One stored instruction in the model, for callers that look at instructions alone.
 pub(crate) fn instruction(stored: &rss::program::Instruction<'_>) -> ladder::Instruction {
     let mut unread = Vec::new();
-    let mut notes = Notes { stream: String::new(), record: String::new(), diagnostics: &mut unread };
+    let mut notes =
+        Notes { stream: String::new(), record: String::new(), borrowed_comments: false, diagnostics: &mut unread };
     program::instruction(stored, &mut notes)
 }
 
@@ -59,6 +60,8 @@ fn diagnostic(severity: Severity, deviation: &rss::Deviation) -> Diagnostic {
 pub(crate) struct Notes<'d> {
     stream: String,
     record: String,
+    /// The rungs refer to the comments of another image, which may have changed since.
+    borrowed_comments: bool,
     diagnostics: &'d mut Vec<Diagnostic>,
 }
 
@@ -134,6 +137,7 @@ impl<'f> ImageReader<'f> {
             let mut notes = Notes {
                 stream: StreamKind::ProgramFiles.path(kind),
                 record: String::new(),
+                borrowed_comments: kind == ImageKind::Online,
                 diagnostics: &mut self.diagnostics,
             };
             image.program_files = program::program_files(&record, &mut comments, &mut notes);
