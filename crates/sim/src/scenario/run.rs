@@ -1,0 +1,338 @@
+//! Carries a scenario out.
+
+use std::fmt;
+use std::time::Duration;
+
+use ladder::{Address, Family, Image, Place, Rung, Value};
+
+use super::literal::{Mismatch, matches, value_for};
+use super::{Assignment, Length, Scenario, Spot, Step, Subject, Target};
+use crate::{AccessError, Approximation, Choices, Machine, MajorFault, Options, Program, Refusal, inline_image};
+
+/// Where programs come from: `sim` reads no file and no text.
+pub trait Loader {
+    /// The program at a path as the scenario spells it.
+    ///
+    /// # Errors
+    /// Why it cannot be had.
+    fn program(&self, path: &str) -> Result<Image, String>;
+
+    /// The rungs of an inline ladder, one per line.
+    ///
+    /// # Errors
+    /// Each place that cannot be read: its line in the text, from 1, and what is wrong.
+    fn rungs(&self, text: &str, family: Family) -> Result<Vec<Rung>, Vec<(u32, String)>>;
+}
+
+/// Why a scenario could not be carried out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RunError {
+    /// Something in the scenario, with its line.
+    Scenario(Spot<String>),
+    /// The program holds instructions that cannot be simulated.
+    Refused(Vec<Refusal>),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RunError::Scenario(spot) => write!(f, "line {}: {}", spot.line, spot.value),
+            RunError::Refused(refusals) => {
+                f.write_str("the program cannot be simulated")?;
+                refusals.iter().try_for_each(|refusal| write!(f, "; {refusal}"))
+            }
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+/// How a scenario went.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// Every expectation that was not met, in order.
+    pub failures: Vec<Failure>,
+    /// Expectations looked at, faults included.
+    pub checks: usize,
+    /// Scans.
+    pub scans: u64,
+    /// Simulated time.
+    pub time: Duration,
+    /// What of the program ran only approximately.
+    pub approximations: Vec<Approximation>,
+    /// Indirect addresses that left their file and reached other data.
+    pub strays: u64,
+}
+
+/// An expectation that was not met.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// The step, from 1.
+    pub step: usize,
+    /// Its remark.
+    pub note: Option<String>,
+    /// Line of the expectation in the scenario, from 1.
+    pub line: u32,
+    /// Scans made so far.
+    pub scan: u64,
+    /// Simulated time so far.
+    pub time: Duration,
+    /// What is wrong.
+    pub found: Found,
+}
+
+/// What was found in place of what was expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// Another value at this address.
+    Value {
+        /// The address as written.
+        address: String,
+        /// Both values.
+        mismatch: Mismatch,
+    },
+    /// Another major fault, or none, or one that nobody expected.
+    Fault {
+        /// The code the step expects.
+        expected: Option<u16>,
+        /// The fault the processor stopped with.
+        found: Option<MajorFault>,
+    },
+}
+
+impl fmt::Display for Failure {
+    /// `step 2 (press start), scan 3, 0.020 s: T4:0.ACC expected 100 (0064h), found 99 (0063h)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "step {}", self.step)?;
+        if let Some(note) = &self.note {
+            write!(f, " ({note})")?;
+        }
+        write!(f, ", scan {}, {:.3} s: ", self.scan, self.time.as_secs_f64())?;
+        match &self.found {
+            Found::Value { address, mismatch } => {
+                write!(f, "{address} expected {}, found {}", mismatch.expected, mismatch.found)
+            }
+            Found::Fault { expected, found } => {
+                match expected {
+                    Some(code) => write!(f, "expected major fault {code:04X}, found ")?,
+                    None => f.write_str("expected no major fault, found ")?,
+                }
+                match found {
+                    Some(fault) => write!(f, "{fault}"),
+                    None => f.write_str("none"),
+                }
+            }
+        }
+    }
+}
+
+/// Carries a scenario out.
+///
+/// # Errors
+/// The program cannot be had or simulated, or an address of the scenario does not exist in it.
+/// Expectations that are not met are no error: they are in the [`Report`].
+pub fn run(scenario: &Scenario, loader: &dyn Loader, choices: Choices) -> Result<Report, RunError> {
+    let (image, mut options) = image(scenario, loader)?;
+    options.choices = choices;
+    options.addresses = named(scenario).map(|spot| address(spot)).collect::<Result<_, _>>()?;
+    options.addresses.iter_mut().for_each(|address| address.indexed = false);
+    let program = Program::compile(&image, &options).map_err(RunError::Refused)?;
+    let approximations = program.approximations().to_vec();
+    let mut player = Player {
+        machine: Machine::new(program),
+        dt: scenario.scan,
+        entered: true,
+        scans: 0,
+        checks: 0,
+        failures: Vec::new(),
+    };
+    if let Some(first) = scenario.steps.first() {
+        player.assign(&first.set)?;
+    }
+    player.machine.enter_run();
+    for (index, step) in scenario.steps.iter().enumerate() {
+        player.step(index + 1, step)?;
+    }
+    Ok(Report {
+        failures: player.failures,
+        checks: player.checks,
+        scans: player.scans,
+        time: player.machine.now(),
+        approximations,
+        strays: player.machine.strays(),
+    })
+}
+
+fn image(scenario: &Scenario, loader: &dyn Loader) -> Result<(Image, Options), RunError> {
+    let family = match scenario.target {
+        Some(Target::DoMore) => {
+            let message = "family do-more: this version simulates SLC 500 and MicroLogix programs only";
+            return Err(at(1, message));
+        }
+        Some(Target::Slc(family)) => Some(family),
+        None => None,
+    };
+    let options = Options { family, ..Options::default() };
+    match &scenario.program {
+        Subject::File(path) => {
+            let image = loader.program(&path.value).map_err(|why| at(path.line, format!("{}: {why}", path.value)))?;
+            Ok((image, options))
+        }
+        Subject::Inline(routines) => {
+            let family = family.unwrap_or(Family::Unknown);
+            let mut files = Vec::new();
+            for routine in routines {
+                let number = routine.name.value.parse().map_err(|_| {
+                    at(routine.name.line, format!("`{}` is no program file number", routine.name.value))
+                })?;
+                let rungs = loader.rungs(&routine.text, family).map_err(|problems| {
+                    let place = |(line, why): &(u32, String)| (routine.line + line.saturating_sub(1), why.clone());
+                    let (line, why) = problems.first().map(place).unwrap_or((routine.line, "no rung".to_owned()));
+                    at(line, format!("ladder of program file {number}: {why}"))
+                })?;
+                files.push((number, rungs));
+            }
+            Ok((inline_image(family, files), Options { inline: true, ..options }))
+        }
+    }
+}
+
+fn at(line: u32, message: impl Into<String>) -> RunError {
+    RunError::Scenario(Spot { value: message.into(), line })
+}
+
+/// Every address a scenario names.
+fn named(scenario: &Scenario) -> impl Iterator<Item = &Spot<String>> {
+    scenario.steps.iter().flat_map(|step| {
+        let values = step.set.iter().chain(&step.expect).map(|assignment| &assignment.address);
+        values.chain(step.edges.as_ref().map(|edges| &edges.bit))
+    })
+}
+
+fn address(spot: &Spot<String>) -> Result<Address, RunError> {
+    Address::parse(&spot.value).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
+}
+
+/// A machine with what is counted while a scenario runs on it.
+struct Player {
+    machine: Machine,
+    dt: Duration,
+    /// No scan since run was entered.
+    entered: bool,
+    scans: u64,
+    checks: usize,
+    failures: Vec<Failure>,
+}
+
+impl Player {
+    fn step(&mut self, number: usize, step: &Step) -> Result<(), RunError> {
+        if step.program_run {
+            self.machine.enter_program();
+            self.machine.enter_run();
+            self.entered = true;
+        }
+        // A fault on going to run belongs to the step that causes it.
+        let before = if step.program_run || number == 1 { None } else { self.machine.fault() };
+        self.assign(&step.set)?;
+        if let Some(edges) = &step.edges {
+            for _ in 0..edges.count {
+                for level in [false, true] {
+                    self.write(&edges.bit, &Value::Bit(level))?;
+                    self.scan();
+                }
+            }
+        }
+        match step.length {
+            Length::None => {}
+            Length::Scans(count) => (0..count).for_each(|_| self.scan()),
+            Length::For(time) => {
+                let end = self.machine.now() + time;
+                while self.machine.now() < end {
+                    self.scan();
+                }
+            }
+        }
+        self.check_fault(number, step, before);
+        for assignment in &step.expect {
+            let spot = &assignment.address;
+            let found = self.read(spot)?;
+            self.checks += 1;
+            let wrong =
+                matches(&assignment.value, &found).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))?;
+            if let Some(mismatch) = wrong {
+                self.fail(number, step, spot.line, Found::Value { address: spot.value.clone(), mismatch });
+            }
+        }
+        Ok(())
+    }
+
+    /// A fault must be the one expected; one that came in this step must have been expected.
+    fn check_fault(&mut self, number: usize, step: &Step, before: Option<MajorFault>) {
+        let found = self.machine.fault();
+        let expected = step.fault.as_ref().map(|spot| spot.value);
+        let met = match expected {
+            Some(code) => found.is_some_and(|fault| fault.code == code),
+            None => found.is_none() || found == before,
+        };
+        self.checks += usize::from(expected.is_some());
+        if !met {
+            let line = step.fault.as_ref().map_or(step.line, |spot| spot.line);
+            self.fail(number, step, line, Found::Fault { expected, found });
+        }
+    }
+
+    fn fail(&mut self, number: usize, step: &Step, line: u32, found: Found) {
+        let (note, scan, time) = (step.note.clone(), self.scans, self.machine.now());
+        self.failures.push(Failure { step: number, note, line, scan, time, found });
+    }
+
+    fn scan(&mut self) {
+        let dt = if std::mem::take(&mut self.entered) { Duration::ZERO } else { self.dt };
+        self.machine.scan(dt);
+        self.scans += 1;
+    }
+
+    fn assign(&mut self, assignments: &[Assignment]) -> Result<(), RunError> {
+        for assignment in assignments {
+            let spot = &assignment.address;
+            let present = self.read(spot)?;
+            let value = value_for(&assignment.value, &present)
+                .map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))?;
+            self.write(spot, &value)?;
+        }
+        Ok(())
+    }
+
+    fn read(&self, spot: &Spot<String>) -> Result<Value, RunError> {
+        let place = self.place(spot)?;
+        self.machine.get(&place).map_err(|why| access(spot, &why))
+    }
+
+    fn write(&mut self, spot: &Spot<String>, value: &Value) -> Result<(), RunError> {
+        let place = self.place(spot)?;
+        self.machine.set(&place, value).map_err(|why| access(spot, &why))
+    }
+
+    /// The address with what stands in brackets read from the data table.
+    fn place(&self, spot: &Spot<String>) -> Result<Address, RunError> {
+        let mut address = address(spot)?;
+        for place in [Some(&mut address.file), Some(&mut address.element), address.bit.as_mut()].into_iter().flatten() {
+            if let Place::Indirect(inner) = place {
+                let value = self.machine.get(inner).map_err(|why| access(spot, &why))?;
+                let number = match value {
+                    Value::Word(word) => u16::try_from(word).ok(),
+                    Value::Long(long) => u16::try_from(long).ok(),
+                    _ => None,
+                };
+                let number =
+                    number.ok_or_else(|| at(spot.line, format!("{}: [{inner}] holds no place", spot.value)))?;
+                *place = Place::Number(number);
+            }
+        }
+        Ok(address)
+    }
+}
+
+fn access(spot: &Spot<String>, why: &AccessError) -> RunError {
+    at(spot.line, format!("{}: {why}", spot.value))
+}
