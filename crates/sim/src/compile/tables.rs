@@ -1,0 +1,242 @@
+//! The data files a program runs on: those of the image, or made to measure for an inline ladder.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use instr::{Extent, by_mnemonic};
+use ladder::{Address, DataFile, Expression, Family, FileType, Image, Instruction, Number, Operand, TimeBase};
+
+use super::Compiler;
+use crate::Options;
+use crate::program::Approximation;
+use crate::status;
+
+pub(super) struct Tables {
+    pub(super) files: Vec<DataFile>,
+    /// I/O and module words that the program or the caller names.
+    pub(super) wanted: Vec<(FileType, u16, u16)>,
+    pub(super) approximations: Vec<Approximation>,
+}
+
+/// Words per element of function files a processor has although no project says so.
+const FUNCTION_WORDS: u16 = 64;
+/// Elements of such a file.
+const FUNCTION_ELEMENTS: u16 = 8;
+
+pub(super) fn tables(image: &Image, options: &Options, family: Family) -> Tables {
+    let mut needs = Needs::default();
+    for instruction in image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions()) {
+        needs.instruction(instruction, family);
+    }
+    for address in &options.addresses {
+        needs.address(address, 1);
+    }
+    let mut files: Vec<DataFile> = image
+        .data_files
+        .iter()
+        .filter(|file| !matches!(file.file_type, FileType::Unused | FileType::Reserved | FileType::M0 | FileType::M1))
+        .cloned()
+        .collect();
+    files.sort_by_key(|file| file.number);
+    let mut functions = image.function_files.clone();
+    let mut approximations = Vec::new();
+    for (number, file_type) in [(0, FileType::O), (1, FileType::I), (2, FileType::S)] {
+        if files.iter().all(|file| file.file_type != file_type) {
+            let elements = if file_type == FileType::S { status::WORDS as u16 } else { 0 };
+            files.push(DataFile::new(file_type, number, elements));
+        }
+    }
+    if options.inline {
+        needs.grow(&mut files, &mut functions);
+    } else {
+        for file_type in needs.function_files(&functions) {
+            let why = format!("the project has no {file_type} function file: an empty one takes its place");
+            approximations.push(Approximation { site: None, why });
+            functions.push(function_file(file_type));
+        }
+    }
+    files.sort_by_key(|file| file.number);
+    files.append(&mut functions);
+    Tables { files, wanted: needs.io.into_iter().collect(), approximations }
+}
+
+fn function_file(file_type: FileType) -> DataFile {
+    let mut file = DataFile::new(file_type, file_type.implied_file().unwrap_or(0), FUNCTION_ELEMENTS);
+    file.words_per_element = FUNCTION_WORDS;
+    file.words = vec![0; usize::from(FUNCTION_ELEMENTS) * usize::from(FUNCTION_WORDS)];
+    file
+}
+
+/// What the direct addresses of a program reach.
+#[derive(Default)]
+struct Needs {
+    /// Elements by type and file number.
+    files: BTreeMap<(FileType, u16), u32>,
+    io: BTreeSet<(FileType, u16, u16)>,
+}
+
+/// A data file has at most this many elements; more is asked by mistake only.
+const MAX_ELEMENTS: u32 = 1024;
+
+impl Needs {
+    fn instruction(&mut self, instruction: &Instruction, family: Family) {
+        let entry = instruction.mnemonic.name().and_then(by_mnemonic);
+        let form = entry.and_then(|entry| entry.form_for(family, instruction.operands.len()));
+        for (index, operand) in instruction.operands.iter().enumerate() {
+            let words = form.and_then(|form| form.operands.get(index)).map_or(1, |described| {
+                let count = |index: usize| constant(instruction.operands.get(index)).unwrap_or(1).clamp(1, 4096);
+                let size = |index: usize| size_of(instruction.operands.get(index));
+                match described.extent {
+                    Extent::Elements { length, size_of } => count(length) * size(size_of),
+                    Extent::Steps { length } => (count(length) + 1) * size(index),
+                    Extent::ValueOrSteps { length } if is_file(operand) => (count(length) + 1) * size(index),
+                    Extent::Words { length } => count(length),
+                    Extent::Bits { length } => count(length).div_ceil(16),
+                    Extent::Block { words } => u32::from(words),
+                    _ => 1,
+                }
+            });
+            self.operand(operand, words);
+        }
+    }
+
+    fn operand(&mut self, operand: &Operand, words: u32) {
+        match operand {
+            Operand::Address(address) => self.address(address, words),
+            Operand::Expression(expression) => self.expression(expression),
+            Operand::HighSpeedCounter(_) => {
+                self.files.entry((FileType::HSC, 0)).or_insert(1);
+            }
+            _ => {}
+        }
+    }
+
+    fn expression(&mut self, expression: &Expression) {
+        for operand in expression.operands() {
+            self.operand(operand, 1);
+        }
+    }
+
+    fn address(&mut self, address: &Address, words: u32) {
+        for inner in address.indirections() {
+            self.address(inner, 1);
+        }
+        let element = address.element.number();
+        if address.file_type.has_slots() {
+            let Some(slot) = element else { return };
+            let first = address.word.unwrap_or(0);
+            for word in 0..words.min(256) as u16 {
+                self.io.insert((address.file_type, slot, first.saturating_add(word)));
+            }
+            return;
+        }
+        let (Some(file), Some(element)) = (address.file.number(), element) else { return };
+        let size = size_of_type(address.file_type);
+        let last = u32::from(element) + words.div_ceil(size).max(1);
+        let need = self.files.entry((address.file_type, file)).or_insert(0);
+        *need = (*need).max(last.min(MAX_ELEMENTS));
+    }
+
+    /// Function files that are named and that no file stands for.
+    fn function_files(&self, present: &[DataFile]) -> Vec<FileType> {
+        let mut missing: Vec<FileType> = Vec::new();
+        for (file_type, _) in self.files.keys().filter(|key| key.0.is_function_file()) {
+            if present.iter().all(|file| file.file_type != *file_type) && !missing.contains(file_type) {
+                missing.push(*file_type);
+            }
+        }
+        missing
+    }
+
+    fn grow(&self, files: &mut Vec<DataFile>, functions: &mut Vec<DataFile>) {
+        for file_type in self.function_files(functions) {
+            functions.push(function_file(file_type));
+        }
+        for ((file_type, number), elements) in &self.files {
+            let elements = u16::try_from(*elements).unwrap_or(u16::MAX);
+            if file_type.is_function_file() {
+                continue;
+            }
+            match files.iter_mut().find(|file| file.number == *number) {
+                Some(file) if file.file_type == *file_type => {
+                    if file.elements < elements {
+                        file.elements = elements;
+                        let words = usize::from(elements) * usize::from(file.words_per_element);
+                        file.words.resize(words, 0);
+                    }
+                }
+                // Another type under this number: its addresses are refused one by one.
+                Some(_) => {}
+                None => files.push(DataFile::new(*file_type, *number, elements)),
+            }
+        }
+    }
+}
+
+fn is_file(operand: &Operand) -> bool {
+    operand.address().is_some_and(|address| address.indexed)
+}
+
+fn constant(operand: Option<&Operand>) -> Option<u32> {
+    let value = operand?.constant()?.as_integer()?;
+    u32::try_from(value).ok()
+}
+
+fn size_of(operand: Option<&Operand>) -> u32 {
+    operand.and_then(Operand::address).map_or(1, |address| size_of_type(address.file_type))
+}
+
+fn size_of_type(file_type: FileType) -> u32 {
+    u32::from(file_type.words_per_element().unwrap_or(1)).max(1)
+}
+
+impl Compiler<'_> {
+    /// Applies the parameters written in inline rungs; the first instruction on an element decides.
+    pub(super) fn parameters(&self, data: &mut [u16]) {
+        let mut done: BTreeSet<u32> = BTreeSet::new();
+        let image = self.image;
+        for instruction in image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions()) {
+            let name = instruction.mnemonic.name().unwrap_or("");
+            // Operand of the element, then of the values of its words 1 and 2.
+            let (element, first, second) = match name {
+                "TON" | "TOF" | "RTO" => (0, 2, Some(3)),
+                "CTU" | "CTD" => (0, 1, Some(2)),
+                "BSL" | "BSR" => (1, 3, None),
+                "FFL" | "LFL" | "FFU" | "LFU" => (2, 3, Some(4)),
+                "SQO" | "SQC" => (3, 4, Some(5)),
+                "SQL" => (2, 3, Some(4)),
+                "ARD" | "ARL" | "AWA" | "AWT" => (2, 3, None),
+                _ => continue,
+            };
+            let location = instruction.operands.get(element).and_then(Operand::address);
+            let Some(location) = location.and_then(|address| self.layout.locate(address)) else { continue };
+            if !done.insert(location.word) {
+                continue;
+            }
+            let at = location.word as usize;
+            if matches!(name, "TON" | "TOF" | "RTO")
+                && let Some(base) = time_base(instruction.operands.get(1))
+                && let Some(word) = data.get_mut(at)
+            {
+                *word = *word & !0x0300 | base.control_bits();
+            }
+            for (offset, operand) in [(1, Some(first)), (2, second)] {
+                let value = operand.and_then(|index| instruction.operands.get(index)).and_then(Operand::constant);
+                if let (Some(value), Some(word)) = (value.and_then(|c| c.as_integer()), data.get_mut(at + offset)) {
+                    *word = value as u16;
+                }
+            }
+        }
+    }
+}
+
+/// The time base written as an operand.
+pub(super) fn time_base(operand: Option<&Operand>) -> Option<TimeBase> {
+    match operand? {
+        Operand::Constant(constant) => TimeBase::from_text(constant.text()).or(match constant.number() {
+            Number::Integer(1) => Some(TimeBase::Second),
+            _ => None,
+        }),
+        Operand::Text(text) => TimeBase::from_text(text),
+        _ => None,
+    }
+}

@@ -1,0 +1,168 @@
+//! Saved states: a stable byte form of [`State`].
+//!
+//! `RUNGSIM1`, the identity of the program, then every field in a fixed order, numbers little-endian.
+
+use std::fmt;
+
+use crate::fault::MajorFault;
+use crate::machine::Mode;
+use crate::op::Compiled;
+use crate::state::{MessageSlot, PidSlot, State, TimedInterrupt, TimerSlot};
+
+const MAGIC: &[u8; 8] = b"RUNGSIM1";
+
+/// Why bytes are no state of this machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestoreError {
+    /// They do not begin as a saved state, or end early or late.
+    NotAState,
+    /// The state was saved from another program or under other options.
+    OtherProgram,
+}
+
+impl fmt::Display for RestoreError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            RestoreError::NotAState => "not a saved machine state, or a damaged one",
+            RestoreError::OtherProgram => "the state was saved from another program or with other options",
+        })
+    }
+}
+
+impl std::error::Error for RestoreError {}
+
+const MODES: [Mode; 5] = [Mode::Program, Mode::Run, Mode::Test, Mode::Suspend, Mode::Fault];
+
+pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
+    let mut out = Vec::with_capacity(64 + 2 * state.mem.len() + 24 * state.timers.len());
+    out.extend_from_slice(MAGIC);
+    let long = |out: &mut Vec<u8>, value: u64| out.extend_from_slice(&value.to_le_bytes());
+    long(&mut out, program.identity);
+    for word in state.mem.iter().chain(&state.inputs).chain(&state.outputs) {
+        out.extend_from_slice(&word.to_le_bytes());
+    }
+    for (on, off) in state.input_forces.iter().chain(&state.output_forces) {
+        out.extend_from_slice(&on.to_le_bytes());
+        out.extend_from_slice(&off.to_le_bytes());
+    }
+    for timer in &state.timers {
+        long(&mut out, timer.last);
+        long(&mut out, timer.part);
+        out.push(timer.fresh.into());
+    }
+    for pid in &state.pids {
+        long(&mut out, pid.last);
+        out.push(pid.running.into());
+        for value in pid.memory {
+            long(&mut out, value.to_bits());
+        }
+    }
+    for message in &state.messages {
+        long(&mut out, message.started);
+        out.push(message.active.into());
+    }
+    out.extend(state.adjusts.iter().map(|edge| u8::from(*edge)));
+    for value in [
+        state.now,
+        state.scans,
+        state.executed,
+        state.limit,
+        state.clock_part,
+        state.second_part,
+        state.since_scan,
+        state.strays,
+        state.timed.next,
+        state.timed.period,
+    ] {
+        long(&mut out, value);
+    }
+    let timed = state.timed;
+    out.extend_from_slice(&[timed.enabled.into(), timed.fine.into(), timed.executing.into(), timed.pending]);
+    out.extend_from_slice(&state.events);
+    out.push(MODES.iter().position(|mode| *mode == state.mode).unwrap_or(0) as u8);
+    let fault = state.fault.map_or([0; 4], |fault| [1, fault.code, fault.file, fault.rung]);
+    fault.into_iter().for_each(|word: u16| out.extend_from_slice(&word.to_le_bytes()));
+    out
+}
+
+pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, RestoreError> {
+    let mut reader = Reader { bytes };
+    if reader.take::<8>()? != *MAGIC {
+        return Err(RestoreError::NotAState);
+    }
+    if reader.long()? != program.identity {
+        return Err(RestoreError::OtherProgram);
+    }
+    let mut state = State::new(program);
+    for word in state.mem.iter_mut().chain(&mut state.inputs).chain(&mut state.outputs) {
+        *word = reader.word()?;
+    }
+    for force in state.input_forces.iter_mut().chain(&mut state.output_forces) {
+        *force = (reader.word()?, reader.word()?);
+    }
+    for timer in &mut state.timers {
+        *timer = TimerSlot { last: reader.long()?, part: reader.long()?, fresh: reader.flag()? };
+    }
+    for pid in &mut state.pids {
+        *pid = PidSlot { last: reader.long()?, running: reader.flag()?, memory: [0.0; 6] };
+        for value in &mut pid.memory {
+            *value = f64::from_bits(reader.long()?);
+        }
+    }
+    for message in &mut state.messages {
+        *message = MessageSlot { started: reader.long()?, active: reader.flag()? };
+    }
+    for edge in &mut state.adjusts {
+        *edge = reader.flag()?;
+    }
+    state.now = reader.long()?;
+    state.scans = reader.long()?;
+    state.executed = reader.long()?;
+    state.limit = reader.long()?;
+    state.clock_part = reader.long()?;
+    state.second_part = reader.long()?;
+    state.since_scan = reader.long()?;
+    state.strays = reader.long()?;
+    state.timed = TimedInterrupt {
+        next: reader.long()?,
+        period: reader.long()?,
+        enabled: reader.flag()?,
+        fine: reader.flag()?,
+        executing: reader.flag()?,
+        pending: reader.take::<1>()?[0],
+    };
+    state.events = reader.take::<8>()?;
+    let mode = reader.take::<1>()?[0];
+    state.mode = *MODES.get(usize::from(mode)).ok_or(RestoreError::NotAState)?;
+    let (present, code, file, rung) = (reader.word()?, reader.word()?, reader.word()?, reader.word()?);
+    state.fault = (present != 0).then_some(MajorFault { code, file, rung });
+    if reader.bytes.is_empty() { Ok(state) } else { Err(RestoreError::NotAState) }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], RestoreError> {
+        let (taken, rest) = self.bytes.split_first_chunk::<N>().ok_or(RestoreError::NotAState)?;
+        self.bytes = rest;
+        Ok(*taken)
+    }
+
+    fn word(&mut self) -> Result<u16, RestoreError> {
+        self.take().map(u16::from_le_bytes)
+    }
+
+    fn long(&mut self) -> Result<u64, RestoreError> {
+        self.take().map(u64::from_le_bytes)
+    }
+
+    fn flag(&mut self) -> Result<bool, RestoreError> {
+        match self.take::<1>()? {
+            [0] => Ok(false),
+            [1] => Ok(true),
+            _ => Err(RestoreError::NotAState),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Everything that changes while a program runs.
+
+use crate::fault::MajorFault;
+use crate::machine::Mode;
+use crate::op::Compiled;
+
+/// What a timer element has beside its three words.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct TimerSlot {
+    /// Time of the last execution, in nanoseconds.
+    pub(crate) last: u64,
+    /// Part of a tick gathered so far, in nanoseconds.
+    pub(crate) part: u64,
+    /// Not executed since entering run.
+    pub(crate) fresh: bool,
+}
+
+/// What a PID instruction keeps between updates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PidSlot {
+    pub(crate) last: u64,
+    pub(crate) running: bool,
+    /// The caller of the pure functions keeps their state here.
+    pub(crate) memory: [f64; 6],
+}
+
+/// A message or ASCII operation under way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct MessageSlot {
+    pub(crate) started: u64,
+    pub(crate) active: bool,
+}
+
+/// The selectable timed interrupt.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct TimedInterrupt {
+    /// Time of the next expiry; meaningful while `period` is not 0.
+    pub(crate) next: u64,
+    /// Running period in nanoseconds, 0 while it is off.
+    pub(crate) period: u64,
+    /// The enable bit as it was last taken over.
+    pub(crate) enabled: bool,
+    /// 1 ms units, taken over on entering run.
+    pub(crate) fine: bool,
+    /// The routine is executing.
+    pub(crate) executing: bool,
+    /// Interrupts waiting.
+    pub(crate) pending: u8,
+}
+
+/// Machine state: plain data.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct State {
+    pub(crate) mem: Vec<u16>,
+    /// What the input terminals carry, one word per word of file I.
+    pub(crate) inputs: Vec<u16>,
+    /// What the output terminals carry, one word per word of file O.
+    pub(crate) outputs: Vec<u16>,
+    pub(crate) input_forces: Vec<(u16, u16)>,
+    pub(crate) output_forces: Vec<(u16, u16)>,
+    pub(crate) timers: Vec<TimerSlot>,
+    pub(crate) pids: Vec<PidSlot>,
+    pub(crate) messages: Vec<MessageSlot>,
+    pub(crate) adjusts: Vec<bool>,
+    /// Simulated time since the machine was made, in nanoseconds.
+    pub(crate) now: u64,
+    pub(crate) scans: u64,
+    /// Instructions executed so far.
+    pub(crate) executed: u64,
+    /// `executed` may reach this before the watchdog trips.
+    pub(crate) limit: u64,
+    pub(crate) mode: Mode,
+    pub(crate) fault: Option<MajorFault>,
+    /// Part of a count of S:4, and of a second of the clock, in nanoseconds.
+    pub(crate) clock_part: u64,
+    pub(crate) second_part: u64,
+    /// Time since the last scan began.
+    pub(crate) since_scan: u64,
+    pub(crate) timed: TimedInterrupt,
+    /// Inputs as the event interrupts saw them last: two waiting counts per source.
+    pub(crate) events: [u8; 8],
+    /// Indirect addresses that left their file, so far.
+    pub(crate) strays: u64,
+}
+
+impl State {
+    pub(crate) fn new(program: &Compiled) -> State {
+        let (first, count) = program.inputs;
+        let inputs = program.data.get(first..first + count).unwrap_or_default().to_vec();
+        State {
+            mem: program.data.clone(),
+            inputs,
+            outputs: vec![0; program.outputs.1],
+            input_forces: program.input_forces.clone(),
+            output_forces: program.output_forces.clone(),
+            timers: vec![TimerSlot::default(); program.timers],
+            pids: vec![PidSlot::default(); program.pids],
+            messages: vec![MessageSlot::default(); program.messages],
+            adjusts: vec![false; program.adjusts],
+            now: 0,
+            scans: 0,
+            executed: 0,
+            limit: 0,
+            mode: Mode::Program,
+            fault: None,
+            clock_part: 0,
+            second_part: 0,
+            since_scan: 0,
+            timed: TimedInterrupt::default(),
+            events: [0; 8],
+            strays: 0,
+        }
+    }
+}
