@@ -27,10 +27,15 @@
 //!
 //! No function panics, whatever the values, lengths and positions are.
 
+pub mod bit;
 pub mod choices;
 pub mod compare;
+pub mod control;
 pub mod conversion;
+pub mod counter;
+pub mod diagnostic;
 pub mod expression;
+pub mod file;
 mod flags;
 pub mod function;
 pub mod logic;
@@ -38,7 +43,24 @@ pub mod math;
 mod number;
 mod rules;
 pub mod scale;
+pub mod sequencer;
+pub mod shift;
+pub mod stack;
+pub mod timer;
 
 pub use flags::Flags;
 pub use number::{Number, Outcome, Register, Width};
 pub use rules::{Lineage, MathMode, Rules};
+
+/// What an instruction with a control element leaves behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done {
+    /// The control element afterwards.
+    pub control: control::Control,
+    /// S:5/2, control register error, is to be set; it becomes major error 0020 at the end of the scan.
+    pub control_error: bool,
+}
+
+/// A length or position reaches beyond the file it applies to. Nothing has been changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BeyondFile;
