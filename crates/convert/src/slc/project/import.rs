@@ -1,5 +1,7 @@
 //! Sections of a text file to the program model.
 
+use std::collections::HashSet;
+
 use ladder::{
     Comment, CommentOwner, DataFile, Diagnostic, Family, FileType, Force, Image, IoConfiguration, IoRange, ProgramFile,
     ProgramFileKind, Project, Rung, Severity, Slot,
@@ -11,17 +13,18 @@ use crate::slc::rung::{parse_rung_at, unread_rung};
 
 /// Builds the model of a file. The diagnostics of the file come first in the project's.
 pub fn project(file: &SlcFile) -> Project {
-    let mut reader = Importer { diagnostics: file.diagnostics.clone() };
+    let mut reader = Importer { diagnostics: file.diagnostics.clone(), noted: 0 };
     let names = file.names().cloned().unwrap_or_default();
     let start = file.start().cloned().unwrap_or_default();
     let mut image = Image { processor: processor::processor(&start, &names.project), ..Image::default() };
-    image.io = io(file, image.family());
+    image.io = reader.io(file, image.family());
     image.program_files = reader.program_files(file, &names, image.family());
     reader.data_files(file, &mut image);
     reader.forces(file, &mut image);
     if image.family() == Family::Unknown {
         reader.note(Severity::Warning, "START", "the processor is not known; instructions are read by their operands");
     }
+    reader.count_unreported();
     let status = image.data_file(FileType::S, 2);
     image.processor.deny_future_access = status.and_then(|file| file.words.get(1)).map(|word| word & 0x4000 != 0);
     Project { main: image, diagnostics: reader.diagnostics, ..Project::default() }
@@ -29,24 +32,82 @@ pub fn project(file: &SlcFile) -> Project {
 
 struct Importer {
     diagnostics: Vec<Diagnostic>,
+    noted: usize,
 }
 
-/// More unreadable rungs than this are only counted.
-const MOST_RUNG_ERRORS: usize = 1000;
+/// A text can have as many faults as lines; nobody reads more than this.
+const MOST_NOTES: usize = 1000;
+
+/// Program and data files are numbered to 255, and no controller has as many slots. Numbers up to
+/// here are taken as they stand, larger ones are damage.
+const LARGEST_NUMBER: u16 = 999;
 
 impl Importer {
     fn note(&mut self, severity: Severity, place: impl Into<String>, message: impl Into<String>) {
-        self.diagnostics.push(Diagnostic { severity, place: place.into(), message: message.into() });
+        self.noted += 1;
+        if self.noted <= MOST_NOTES {
+            self.diagnostics.push(Diagnostic { severity, place: place.into(), message: message.into() });
+        }
+    }
+
+    /// Says how many notes there were no room for.
+    fn count_unreported(&mut self) {
+        if let Some(more @ 1..) = self.noted.checked_sub(MOST_NOTES) {
+            let message = format!("{more} more parts could not be read as expected");
+            self.diagnostics.push(Diagnostic { severity: Severity::Error, place: "file".to_owned(), message });
+        }
+    }
+
+    /// The slots, with their words of files I and O laid out in slot order.
+    fn io(&mut self, file: &SlcFile, family: Family) -> IoConfiguration {
+        let mut slots: Vec<&file::Slot> = Vec::new();
+        for slot in file.slots() {
+            if slot.number > LARGEST_NUMBER {
+                let message = "expected a slot number of a chassis; the slot is left out";
+                self.note(Severity::Error, format!("SLOT {}", slot.number), message);
+            } else {
+                slots.push(slot);
+            }
+        }
+        slots.sort_by_key(|slot| slot.number);
+        slots.dedup_by_key(|slot| slot.number);
+        let is_controller = |slot: &file::Slot| slot.number == 0 && family.is_micrologix();
+        let (mut first_input, mut first_output) = (0_u16, 0_u16);
+        let mut configured = Vec::with_capacity(slots.len());
+        for slot in &slots {
+            let (inputs, outputs) =
+                if is_controller(slot) { (None, None) } else { processor::points(&slot.description) };
+            let range = |first: &mut u16, words: u16, points: Option<u16>| {
+                let first_word = *first;
+                *first = first.saturating_add(words);
+                // The text counts words; fewer points than bits are known from the description alone.
+                let all = words.saturating_mul(16);
+                let bits = points.filter(|points| *points <= all && words > 0 && *points > all - 16).unwrap_or(all);
+                IoRange { first_word, words, bits }
+            };
+            configured.push(Slot {
+                number: slot.number,
+                module: processor::module(slot, is_controller(slot)),
+                inputs: range(&mut first_input, slot.scan_in, inputs),
+                outputs: range(&mut first_output, slot.scan_out, outputs),
+                configuration: slot.configuration.clone().unwrap_or_default(),
+            });
+        }
+        let base = slots.iter().find(|slot| is_controller(slot)).and_then(|slot| processor::base_unit(slot));
+        IoConfiguration {
+            slots: configured,
+            base_unit: base.and_then(|unit| unit.letters()).unwrap_or_default(),
+            unknown: slots.is_empty().then(|| "the text has no SLOT lines".to_owned()),
+        }
     }
 
     /// Files 0 and 1, those of the text, and unused numbers between.
     fn program_files(&mut self, file: &SlcFile, names: &file::Names, family: Family) -> Vec<ProgramFile> {
         let mut files: Vec<ProgramFile> = Vec::new();
-        let mut unread = 0_usize;
         for section in file.ladders() {
             let number = section.number;
-            if number < 2 || files.iter().any(|file| file.number == number) {
-                let message = format!("expected program files from 2 up, each once, found another file {number}");
+            if !(2..=LARGEST_NUMBER).contains(&number) || files.iter().any(|file| file.number == number) {
+                let message = format!("expected program files from 2 to 255, each once, found another file {number}");
                 self.note(Severity::Error, format!("LADDER {number}"), message);
                 continue;
             }
@@ -55,11 +116,8 @@ impl Importer {
                 let mut rung = match parse_rung_at(&lines.text, Some(family), lines.line.max(1)) {
                     Ok(rung) => rung,
                     Err(error) => {
-                        unread += 1;
-                        if unread <= MOST_RUNG_ERRORS {
-                            let place = format!("file {number} > rung {}", rungs.len());
-                            self.note(Severity::Error, place, format!("{error}; the rung is kept as text"));
-                        }
+                        let place = format!("file {number} > rung {}", rungs.len());
+                        self.note(Severity::Error, place, format!("{error}; the rung is kept as text"));
                         unread_rung(inner_text(&lines.text).as_str())
                     }
                 };
@@ -72,27 +130,22 @@ impl Importer {
             }
             files.push(ProgramFile { rungs, ..program_file(number, ProgramFileKind::Ladder) });
         }
-        if unread > MOST_RUNG_ERRORS {
-            let message = format!("{} more rungs could not be read", unread - MOST_RUNG_ERRORS);
-            self.note(Severity::Error, "program files", message);
-        }
-        let named = names.program_files.iter().map(|(number, _)| *number);
-        let last = files.iter().map(|file| file.number).chain(named).max().unwrap_or(2).max(2);
-        if last > MOST_PROGRAM_FILES {
-            self.note(Severity::Warning, format!("LADDER {last}"), "expected program file numbers up to 999");
-        } else {
-            for number in 0..=last {
-                if files.iter().all(|file| file.number != number) {
-                    let kind = if number < 2 { ProgramFileKind::System } else { ProgramFileKind::Unused };
-                    files.push(program_file(number, kind));
-                }
+        let named = || names.program_files.iter().filter(|(number, _)| *number <= LARGEST_NUMBER);
+        let last = files.iter().map(|file| file.number).chain(named().map(|name| name.0)).max().unwrap_or(2).max(2);
+        for number in 0..=last {
+            if files.iter().all(|file| file.number != number) {
+                let kind = if number < 2 { ProgramFileKind::System } else { ProgramFileKind::Unused };
+                files.push(program_file(number, kind));
             }
         }
         files.sort_by_key(|file| file.number);
-        for (number, name) in &names.program_files {
-            if let Some(file) = files.iter_mut().find(|file| file.number == *number) {
+        for (number, name) in named() {
+            if let Some(file) = files.get_mut(usize::from(*number)) {
                 name.clone_into(&mut file.name);
             }
+        }
+        for (number, _) in names.program_files.iter().filter(|(number, _)| *number > LARGEST_NUMBER) {
+            self.note(Severity::Error, "PROJECT", format!("expected program file numbers up to 255, found {number}"));
         }
         files
     }
@@ -113,6 +166,7 @@ impl Importer {
     }
 
     fn data_files(&mut self, file: &SlcFile, image: &mut Image) {
+        let mut seen = HashSet::new();
         for section in file.data() {
             let place = format!("DATA {}{}", section.letters, section.number.map_or(String::new(), |n| n.to_string()));
             let Some(file_type) = FileType::from_letters(&section.letters) else {
@@ -125,10 +179,7 @@ impl Importer {
             };
             if matches!(file_type, FileType::O | FileType::I) {
                 let outputs = file_type == FileType::O;
-                let words: Vec<u16> = section.words.clone();
-                self.io_words(image, file_type, section.first, |file, start| {
-                    copy(&mut file.words, start, &words, 0);
-                });
+                io_words(image, file_type, section.first, &section.words);
                 let expected = expected_words(&image.io, section.first, outputs);
                 if expected.is_some_and(|expected| usize::from(expected) != section.words.len()) {
                     let message = format!(
@@ -142,8 +193,11 @@ impl Importer {
                 continue;
             }
             let number = section.number.or(file_type.implied_file()).unwrap_or(0);
-            if image.data_file(file_type, number).is_some() {
-                self.note(Severity::Error, place, "expected each data file once, found it again; the first is taken");
+            // Function files are numbered on their own, data files together.
+            let key = (file_type.is_function_file().then_some(file_type), number);
+            if number > LARGEST_NUMBER || !seen.insert(key) {
+                let message = "expected data files numbered to 255, each once; this one is left out";
+                self.note(Severity::Error, place, message);
                 continue;
             }
             let mut table = DataFile::new(file_type, number, 0);
@@ -169,26 +223,6 @@ impl Importer {
             }
         }
         fill_gaps(image);
-    }
-
-    /// Applies `put` to file O or I at the first word of a slot, after making it large enough.
-    fn io_words(&mut self, image: &mut Image, file_type: FileType, slot: u16, put: impl Fn(&mut DataFile, usize)) {
-        let outputs = file_type == FileType::O;
-        let range = |slot: &Slot| if outputs { slot.outputs } else { slot.inputs };
-        let end = |slot: &Slot| range(slot).first_word.saturating_add(range(slot).words);
-        let all = image.io.slots.iter().map(end).max().unwrap_or(0);
-        let first = image.io.slots.iter().find(|known| known.number == slot).map(|slot| range(slot).first_word);
-        let number = file_type.implied_file().unwrap_or(0);
-        if image.data_file(file_type, number).is_none() {
-            image.data_files.push(DataFile::new(file_type, number, all));
-        }
-        let Some(file) = image.data_files.iter_mut().find(|file| file.file_type == file_type) else { return };
-        // Words of a slot that no SLOT line names follow what is there already.
-        let start = first.map_or(file.words.len(), usize::from);
-        put(file, start);
-        file.elements = u16::try_from(file.words.len()).unwrap_or(u16::MAX);
-        file.words.truncate(usize::from(file.elements));
-        file.forces.resize(file.words.len(), Force::NONE);
     }
 
     fn forces(&mut self, file: &SlcFile, image: &mut Image) {
@@ -218,8 +252,30 @@ impl Importer {
     }
 }
 
-/// Program files are numbered to 255; a table of unused numbers up to a wild one is of no use.
-const MOST_PROGRAM_FILES: u16 = 999;
+/// Puts the words of a slot into file O or I.
+fn io_words(image: &mut Image, file_type: FileType, slot: u16, words: &[u16]) {
+    let outputs = file_type == FileType::O;
+    let range = |slot: &Slot| if outputs { slot.outputs } else { slot.inputs };
+    if image.data_files.iter().all(|file| file.file_type != file_type) {
+        let end = |slot: &Slot| range(slot).first_word.saturating_add(range(slot).words);
+        let all = image.io.slots.iter().map(end).max().unwrap_or(0);
+        // At the front, where every later slot finds it at once.
+        image.data_files.insert(0, DataFile::new(file_type, file_type.implied_file().unwrap_or(0), all));
+    }
+    let first = image.io.slots.iter().find(|known| known.number == slot).map(|slot| range(slot).first_word);
+    let Some(file) = image.data_files.iter_mut().find(|file| file.file_type == file_type) else { return };
+    // Words of a slot that no SLOT line names follow what is there already.
+    let start = first.map_or(file.words.len(), usize::from);
+    let end = start.saturating_add(words.len()).min(usize::from(u16::MAX));
+    if file.words.len() < end {
+        file.words.resize(end, 0);
+    }
+    for (place, word) in file.words.iter_mut().skip(start).zip(words) {
+        *place = *word;
+    }
+    file.elements = u16::try_from(file.words.len()).unwrap_or(u16::MAX);
+    file.forces.resize(file.words.len(), Force::NONE);
+}
 
 fn program_file(number: u16, kind: ProgramFileKind) -> ProgramFile {
     ProgramFile { number, name: String::new(), description: String::new(), kind, rungs: Vec::new() }
@@ -246,72 +302,25 @@ fn comment(block: &file::TitleBlock, file: u16, rung: usize) -> Comment {
     }
 }
 
-/// The slots, with their words of files I and O laid out in slot order.
-fn io(file: &SlcFile, family: Family) -> IoConfiguration {
-    let mut slots: Vec<&file::Slot> = file.slots().collect();
-    slots.sort_by_key(|slot| slot.number);
-    slots.dedup_by_key(|slot| slot.number);
-    let is_controller = |slot: &file::Slot| slot.number == 0 && family.is_micrologix();
-    let (mut first_input, mut first_output) = (0_u16, 0_u16);
-    let mut configured = Vec::with_capacity(slots.len());
-    for slot in &slots {
-        let (inputs, outputs) = if is_controller(slot) { (None, None) } else { processor::points(&slot.description) };
-        let range = |first: &mut u16, words: u16, points: Option<u16>| {
-            let first_word = *first;
-            *first = first.saturating_add(words);
-            // The text counts words; fewer points than bits are known from the description alone.
-            let all = words.saturating_mul(16);
-            let bits = points.filter(|points| *points <= all && words > 0 && *points > all - 16).unwrap_or(all);
-            IoRange { first_word, words, bits }
-        };
-        configured.push(Slot {
-            number: slot.number,
-            module: processor::module(slot, is_controller(slot)),
-            inputs: range(&mut first_input, slot.scan_in, inputs),
-            outputs: range(&mut first_output, slot.scan_out, outputs),
-            configuration: slot.configuration.clone().unwrap_or_default(),
-        });
-    }
-    let base = slots.iter().find(|slot| is_controller(slot)).and_then(|slot| processor::base_unit(slot));
-    IoConfiguration {
-        slots: configured,
-        base_unit: base.and_then(|unit| unit.letters()).unwrap_or_default(),
-        unknown: slots.is_empty().then(|| "the text has no SLOT lines".to_owned()),
-    }
-}
-
 fn expected_words(io: &IoConfiguration, slot: u16, outputs: bool) -> Option<u16> {
     let slot = io.slots.iter().find(|known| known.number == slot)?;
     Some(if outputs { slot.outputs.words } else { slot.inputs.words })
 }
 
-/// Writes `from` into `to` from `start` on, filling up with `fill` where `to` is too short.
-fn copy<T: Copy>(to: &mut Vec<T>, start: usize, from: &[T], fill: T) {
-    let end = start.saturating_add(from.len());
-    if to.len() < end {
-        to.resize(end, fill);
-    }
-    for (place, value) in to.iter_mut().skip(start).zip(from) {
-        *place = *value;
-    }
-}
-
 /// Orders the files and names the free numbers between them. Numbers below 9 that are missing stay
 /// missing: every processor has those files.
 fn fill_gaps(image: &mut Image) {
-    let is_table = |file: &&DataFile| !matches!(file.file_type, FileType::M0 | FileType::M1);
-    let last = image.data_files.iter().filter(is_table).map(|file| file.number).max().unwrap_or(0);
-    let reserved = (image.family() == Family::SlcFixed && last > 8).then_some((8, FileType::Reserved));
-    let unused = (8..last.min(999)).map(|number| (number, FileType::Unused));
-    for (number, file_type) in reserved.into_iter().chain(unused) {
-        if image.data_files.iter().filter(is_table).all(|file| file.number != number) {
-            let mut file = DataFile::new(file_type, number, 0);
-            file.words_per_element = 0;
-            if file_type == FileType::Reserved {
-                "RESERVED".clone_into(&mut file.name);
-            }
-            image.data_files.push(file);
+    let is_module = |file: &DataFile| matches!(file.file_type, FileType::M0 | FileType::M1);
+    let used: HashSet<u16> = image.data_files.iter().filter(|file| !is_module(file)).map(|file| file.number).collect();
+    let last = used.iter().copied().max().unwrap_or(0);
+    for number in (8..last).filter(|number| !used.contains(number)) {
+        let reserved = number == 8 && image.family() == Family::SlcFixed;
+        let mut file = DataFile::new(if reserved { FileType::Reserved } else { FileType::Unused }, number, 0);
+        file.words_per_element = 0;
+        if reserved {
+            "RESERVED".clone_into(&mut file.name);
         }
+        image.data_files.push(file);
     }
-    image.data_files.sort_by_key(|file| (matches!(file.file_type, FileType::M0 | FileType::M1), file.number));
+    image.data_files.sort_by_key(|file| (is_module(file), file.number));
 }
