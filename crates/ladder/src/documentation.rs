@@ -1,5 +1,6 @@
 //! Symbols, descriptions and comments, and the rules by which they are shown at an operand.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt;
 
@@ -104,6 +105,8 @@ pub struct Documentation {
     entries: Vec<AddressEntry>,
     by_target: HashMap<Target, usize>,
     instruction_comments: Vec<InstructionComment>,
+    /// By target and mnemonic; the first of equal ones.
+    instruction_comment_index: HashMap<Target, HashMap<String, usize>>,
     /// Comments that no rung shows: their rung was deleted or got another comment. Kept.
     pub detached_comments: Vec<Comment>,
 }
@@ -119,7 +122,9 @@ impl PartialEq for Documentation {
 /// What is shown above an operand.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Shown {
-    /// Symbol, with the suffix of the operand when the symbol is the element's (`MODE/3`).
+    /// Symbol, with the suffix of the operand when the symbol is the element's (`MODE/3`,
+    /// `SOURCE/[INDEX]`); an indirect address without one has the symbols of the addresses in its
+    /// brackets there (`N9:[INDEX]`). An indexed address has its `#` before it.
     pub symbol: Option<String>,
     /// Description lines.
     pub description: Vec<String>,
@@ -129,13 +134,18 @@ impl Documentation {
     /// Adds an entry. A later entry for the same target is kept but never looked up.
     pub fn add(&mut self, entry: AddressEntry) {
         if entry.target != Target::Unassigned {
-            self.by_target.entry(entry.target.clone()).or_insert(self.entries.len());
+            self.by_target.entry(entry.target.looked_up().into_owned()).or_insert(self.entries.len());
         }
         self.entries.push(entry);
     }
 
-    /// Adds an instruction comment.
+    /// Adds an instruction comment. A later one for the same target and mnemonic is kept but never
+    /// looked up.
     pub fn add_instruction_comment(&mut self, comment: InstructionComment) {
+        if let Some(target) = &comment.target {
+            let of_target = self.instruction_comment_index.entry(target.looked_up().into_owned()).or_default();
+            of_target.entry(comment.mnemonic.clone()).or_insert(self.instruction_comments.len());
+        }
         self.instruction_comments.push(comment);
     }
 
@@ -149,9 +159,15 @@ impl Documentation {
         &self.instruction_comments
     }
 
-    /// The entry of a target.
+    /// The entry of a target; the `#` of an indexed address does not count.
     pub fn entry(&self, target: &Target) -> Option<&AddressEntry> {
-        self.by_target.get(target).and_then(|index| self.entries.get(*index))
+        self.by_target.get(&*target.looked_up()).and_then(|index| self.entries.get(*index))
+    }
+
+    /// The instruction comment of a target under a mnemonic.
+    fn instruction_comment(&self, target: &Target, mnemonic: &str) -> Option<&InstructionComment> {
+        let index = self.instruction_comment_index.get(&*target.looked_up())?.get(mnemonic)?;
+        self.instruction_comments.get(*index)
     }
 
     /// What a person means by `symbol`: the entry that has it, upper or lower case.
@@ -161,27 +177,23 @@ impl Documentation {
 
     /// Symbol and description shown at a target under an instruction.
     ///
-    /// Own symbol, else the element's symbol with the operand's suffix; the instruction comment of
-    /// this mnemonic and address, else the own description, else the element's. Read off printed
-    /// ladder pages; how a word or bit of I and O inherits was never seen printed, they do not here.
+    /// Own symbol, else the element's symbol with the operand's suffix, else the address with symbols
+    /// in its brackets; the instruction comment of this mnemonic and address, else the own
+    /// description, else the element's. Read off printed ladder pages; how a word or bit of I and O
+    /// inherits was never seen printed, they do not here.
     pub fn shown(&self, target: &Target, mnemonic: &str) -> Shown {
         let own = self.entry(target);
-        let element = match target {
-            Target::Address(address) => self.element_entry(address),
-            _ => None,
+        let (symbol, element) = match target {
+            Target::Address(address) => {
+                let mark = if address.indexed { "#" } else { "" };
+                let symbol = self.address_symbol(address).map(|symbol| format!("{mark}{symbol}"));
+                (symbol, self.element_entry(address))
+            }
+            _ => (own.and_then(AddressEntry::symbol).map(str::to_owned), None),
         };
-        let own_symbol = own.filter(|entry| !entry.symbol.is_empty()).map(|entry| entry.symbol.clone());
-        let symbol = own_symbol.or_else(|| {
-            let (entry, suffix) = element.as_ref()?;
-            (!entry.symbol.is_empty()).then(|| format!("{}{suffix}", entry.symbol))
-        });
-        let instruction_comment = self
-            .instruction_comments
-            .iter()
-            .find(|comment| comment.mnemonic == mnemonic && comment.target.as_ref() == Some(target));
-        let description = match instruction_comment {
+        let description = match self.instruction_comment(target, mnemonic) {
             Some(comment) => comment.lines.clone(),
-            None => [own, element.map(|(entry, _)| entry)]
+            None => [own, element]
                 .into_iter()
                 .flatten()
                 .map(|entry| &entry.description)
@@ -192,39 +204,85 @@ impl Documentation {
         Shown { symbol, description }
     }
 
-    /// The entry of the element a word or bit lies in, and the suffix that names the part.
-    fn element_entry(&self, address: &Address) -> Option<(&AddressEntry, String)> {
+    /// The symbol shown at an address, without the `#` of an indexed one.
+    fn address_symbol(&self, address: &Address) -> Option<String> {
+        if let Some(symbol) = self.entry(&Target::Address(address.clone())).and_then(AddressEntry::symbol) {
+            return Some(symbol.to_owned());
+        }
+        let text = Address { indexed: false, ..address.clone() }.to_string();
+        if let Some(symbol) = self.element_entry(address).and_then(AddressEntry::symbol) {
+            let element = whole_element(address).to_string();
+            let suffix = text.strip_prefix(&element).unwrap_or("");
+            let inside = match &address.bit {
+                Some(Place::Indirect(inside)) => Some(&**inside),
+                _ => None,
+            };
+            let suffix = self.with_symbols(suffix, inside.into_iter()).unwrap_or_else(|| suffix.to_owned());
+            return Some(format!("{symbol}{suffix}"));
+        }
+        self.with_symbols(&text, address.indirections())
+    }
+
+    /// The text with the symbols of the addresses in its brackets, which are given in their order.
+    /// `None` if none of them has one.
+    fn with_symbols<'a>(&self, text: &str, inside: impl Iterator<Item = &'a Address>) -> Option<String> {
+        let (mut shown, mut rest, mut found) = (String::new(), text, false);
+        for address in inside {
+            let written = format!("[{address}]");
+            let Some((before, after)) = rest.split_once(&written) else { continue };
+            shown.push_str(before);
+            match self.address_symbol(address) {
+                Some(symbol) => {
+                    found = true;
+                    shown.push_str(&format!("[{symbol}]"));
+                }
+                None => shown.push_str(&written),
+            }
+            rest = after;
+        }
+        shown.push_str(rest);
+        found.then_some(shown)
+    }
+
+    /// The entry of the element a word or bit lies in.
+    fn element_entry(&self, address: &Address) -> Option<&AddressEntry> {
         let has_part = address.word.is_some() || address.bit.is_some();
         if !has_part || address.file_type.has_slots() {
             return None;
         }
-        let element = Address { indexed: false, word: None, bit: None, ..address.clone() };
-        let whole = element.to_string();
-        let entry = self.entry(&Target::Address(element))?;
-        let full = Address { indexed: false, ..address.clone() }.to_string();
-        let suffix = full.strip_prefix(&whole).unwrap_or("").to_owned();
-        Some((entry, suffix))
-    }
-
-    /// Share of the given addresses that have a symbol or description of their own or of their
-    /// element: (documented, all).
-    pub fn coverage<'a>(&self, addresses: impl Iterator<Item = &'a Address>) -> (usize, usize) {
-        addresses.fold((0, 0), |(documented, all), address| {
-            let shown = self.shown(&Target::Address(address.clone()), "");
-            let is = shown.symbol.is_some() || !shown.description.is_empty();
-            (documented + usize::from(is), all + 1)
-        })
+        self.entry(&Target::Address(whole_element(address)))
     }
 }
 
-/// Documentation is looked up by complete addresses without the `#` of file operands.
+/// The element an address lies in, its places as they are written.
+fn whole_element(address: &Address) -> Address {
+    Address { indexed: false, word: None, bit: None, ..address.clone() }
+}
+
+impl AddressEntry {
+    /// The symbol, if there is one.
+    fn symbol(&self) -> Option<&str> {
+        Some(self.symbol.as_str()).filter(|symbol| !symbol.is_empty())
+    }
+}
+
 impl From<&Address> for Target {
     fn from(address: &Address) -> Target {
-        Target::Address(Address { indexed: false, ..address.clone() })
+        Target::Address(address.clone())
     }
 }
 
 impl Target {
+    /// What an entry is stored under: addresses without the `#` of file operands.
+    fn looked_up(&self) -> Cow<'_, Target> {
+        match self {
+            Target::Address(address) if address.indexed => {
+                Cow::Owned(Target::Address(Address { indexed: false, ..address.clone() }))
+            }
+            target => Cow::Borrowed(target),
+        }
+    }
+
     /// The address, if the target is one and no part of it is indirect.
     pub fn direct_address(&self) -> Option<&Address> {
         match self {
@@ -274,5 +332,37 @@ mod tests {
         assert_eq!((own.symbol.as_deref(), own.description), (Some("CONTACT"), vec!["valve in".to_owned()]));
         assert_eq!(docs.shown(&target("I:1.0/3"), "XIC"), Shown::default());
         assert_eq!(docs.by_symbol("contact").map(|e| e.target.to_string()).as_deref(), Some("T4:1/DN"));
+    }
+    #[test]
+    fn symbols_stand_in_brackets() {
+        let mut docs = Documentation::default();
+        docs.add(entry("N7:4", "INDEX", &["which one"]));
+        docs.add(entry("C5:1", "LOOP", &[]));
+        docs.add(entry("L9:0", "SOURCE", &["all bits"]));
+        docs.add(entry("N[N7:4]:0", "BUFFER", &[]));
+        docs.add(entry("N[N7:4]:21", "BITS", &[]));
+        docs.add(entry("N10:[N7:4]", "", &["described only"]));
+        for (address, symbol) in [
+            ("L9:0/[N7:4]", "SOURCE/[INDEX]"),
+            ("L9:0/[N7:5]", "SOURCE/[N7:5]"),
+            ("L9:1/[N7:4]", "L9:1/[INDEX]"),
+            ("I:0.0/[N7:4]", "I:0.0/[INDEX]"),
+            ("N10:[N7:4]", "N10:[INDEX]"),
+            ("T104:[C5:1.ACC].PRE", "T104:[LOOP.ACC].PRE"),
+            ("N[N7:4]:[N7:3]", "N[INDEX]:[N7:3]"),
+            ("N[N7:3]:[N7:4]/[N7:4]", "N[N7:3]:[INDEX]/[INDEX]"),
+            ("#N[N7:4]:0", "#BUFFER"),
+            ("N[N7:4]:21/1", "BITS/1"),
+            ("#N9:[N7:4]", "#N9:[INDEX]"),
+            ("#L9:0", "#SOURCE"),
+        ] {
+            assert_eq!(docs.shown(&target(address), "MOV").symbol.as_deref(), Some(symbol), "{address}");
+        }
+        for address in ["N9:[N7:5]", "#N9:0", "ST9:1.DATA[3]"] {
+            assert_eq!(docs.shown(&target(address), "MOV").symbol, None, "{address}");
+        }
+        assert_eq!(docs.shown(&target("L9:0/[N7:4]"), "XIC").description, ["all bits"]);
+        assert_eq!(docs.shown(&target("N10:[N7:4]"), "MOV").description, ["described only"]);
+        assert!(docs.shown(&target("N9:[N7:4]"), "MOV").description.is_empty());
     }
 }

@@ -138,25 +138,8 @@ impl Source<'_> {
         let shown = self.documentation.shown(&target, instruction.mnemonic.name().unwrap_or(""));
         let mut labels: Vec<(Role, String)> =
             shown.description.iter().map(|line| (Role::Description, clean(line.trim_end()).into_owned())).collect();
-        let symbol = shown.symbol.or_else(|| operand.address().and_then(|a| self.indirect_symbol(a)));
-        if let Some(symbol) = symbol {
-            let mark = if operand.address().is_some_and(|a| a.indexed) { "#" } else { "" };
-            labels.push((Role::Symbol, format!("{mark}{}", clean(&symbol))));
-        }
+        labels.extend(shown.symbol.map(|symbol| (Role::Symbol, clean(&symbol).into_owned())));
         labels
-    }
-
-    /// `B11:0/[OFFSET]` for `B11:0/[N17:2]`: the places the program reads, by their symbols.
-    fn indirect_symbol(&self, address: &Address) -> Option<String> {
-        let mut text = Address { indexed: false, ..address.clone() }.to_string();
-        let mut found = false;
-        for inner in address.indirections() {
-            if let Some(symbol) = self.documentation.shown(&Target::from(inner), "").symbol {
-                text = text.replacen(&format!("[{inner}]"), &format!("[{symbol}]"), 1);
-                found = true;
-            }
-        }
-        found.then_some(text)
     }
 
     /// An operand as a person reads it in this program file.
