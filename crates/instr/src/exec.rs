@@ -29,6 +29,7 @@
 
 pub mod bit;
 pub mod choices;
+pub mod clock;
 pub mod compare;
 pub mod control;
 pub mod conversion;
@@ -41,11 +42,13 @@ pub mod function;
 pub mod logic;
 pub mod math;
 mod number;
+pub mod process;
 mod rules;
 pub mod scale;
 pub mod sequencer;
 pub mod shift;
 pub mod stack;
+pub mod text;
 pub mod timer;
 
 pub use flags::Flags;
