@@ -1,8 +1,11 @@
 //! The command line: every command, its arguments and an example.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use sim::Choices;
+use sim::choices::Choice;
 
 /// Opens RSLogix 500 projects (SLC 500, MicroLogix) without the vendor's software.
 #[derive(Parser)]
@@ -53,6 +56,16 @@ pub enum Command {
                             Example: rungs build conveyor.SLC -o conveyor.RSS"
     )]
     Build(BuildArguments),
+    /// Runs a program in simulated time and prints how chosen addresses and rungs change
+    #[command(after_help = "Example: rungs run conveyor.RSS --for 10s --set I:1/0=1 --watch O:2/5 T4:0\n         \
+                            rungs run conveyor.RSS --for 2s --watch T4:0.ACC --format vcd -o trace.vcd\n         \
+                            rungs run conveyor.RSS --for 100ms --trace-rung 2:4\n\n\
+                            The first scan after entering run has no time before it; every later one comes --scan after the last.")]
+    Run(RunArguments),
+    /// Runs scenarios (TOML) and reports every expectation that is not met
+    #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\
+                            Exit code 0: all met; 1: an expectation not met or a program refused; 3: a scenario or program that cannot be read.")]
+    Test(TestArguments),
 }
 
 /// Which copy of the program a project holds to work on.
@@ -230,6 +243,95 @@ pub struct BuildArguments {
     /// Overwrite the output if it exists
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Args)]
+pub struct RunArguments {
+    /// A project, SLC text or JSON project
+    #[arg(value_name = "FILE")]
+    pub program: PathBuf,
+    /// Simulated time to run
+    #[arg(long = "for", value_name = "TIME", default_value = "10s", value_parser = sim::scenario::parse_duration)]
+    pub duration: Duration,
+    /// Simulated time from one scan to the next
+    #[arg(long, value_name = "TIME", default_value = "10ms", value_parser = sim::scenario::parse_duration)]
+    pub scan: Duration,
+    /// Value to write before the first scan, or from a time on: B3:0/0=1, I:1/3=1@2s, N7:0=0xFF
+    #[arg(long, value_name = "ADDR=VALUE[@TIME]", num_args = 1..)]
+    pub set: Vec<String>,
+    /// Addresses or symbols to follow; a whole timer, counter or control element stands for all its members
+    #[arg(long, value_name = "ADDR", num_args = 1..)]
+    pub watch: Vec<String>,
+    /// Rungs whose power flow to follow: 4, or 3:4 for rung 4 of program file 3
+    #[arg(long, value_name = "[FILE:]RUNG", num_args = 1..)]
+    pub trace_rung: Vec<String>,
+    /// How to write the trace: table shows the scans in which something changed, csv and json every scan
+    #[arg(long, value_enum, default_value_t)]
+    pub format: TraceForm,
+    /// File to write the trace to. Default: standard output
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// Overwrite the output if it exists
+    #[arg(long)]
+    pub force: bool,
+    /// Load a program that holds instructions which cannot be simulated; executing one is major fault 0031
+    #[arg(long)]
+    pub accept_unsupported: bool,
+    #[command(flatten)]
+    pub simulation: Simulation,
+    /// Which copy of the program
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum TraceForm {
+    /// Columns for reading
+    #[default]
+    Table,
+    /// Comma-separated values
+    Csv,
+    /// One JSON document per scan
+    Json,
+    /// Value change dump, for waveform viewers such as GTKWave
+    Vcd,
+}
+
+#[derive(Args)]
+pub struct TestArguments {
+    /// Scenarios or folders of scenarios (*.toml)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Write the results as JUnit XML too
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Print only what failed, and the sum
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// JSON, one document per line and scenario
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub simulation: Simulation,
+}
+
+#[derive(Args)]
+pub struct Simulation {
+    /// Take the other reading of an open question, see docs/semantics-choices.md
+    #[arg(long = "choice", value_name = "NAME", value_parser = choice)]
+    pub choices: Vec<Choice>,
+}
+
+impl Simulation {
+    /// All answers together.
+    pub fn choices(&self) -> Choices {
+        self.choices.iter().fold(Choices::default(), |all, choice| all.with(*choice))
+    }
+}
+
+fn choice(name: &str) -> Result<Choice, String> {
+    let names = || sim::choices::LIST.iter().map(|row| row.name).collect::<Vec<_>>().join(", ");
+    Choices::by_name(name).ok_or_else(|| format!("expected one of {}", names()))
 }
 
 /// Rung numbers, both ends included.

@@ -10,6 +10,9 @@ pub const PROJECTS: &[&str] = &["rss"];
 /// Endings of project files and of SLC text, which holds a program too.
 pub const PROGRAMS: &[&str] = &["rss", "slc"];
 
+/// Endings of scenarios.
+pub const SCENARIOS: &[&str] = &["toml"];
+
 /// Files in the order given, folders replaced by the files below them that have one of the endings, in
 /// order of name. A file named on the command line is taken whatever its ending: its content decides.
 ///

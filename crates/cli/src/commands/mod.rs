@@ -4,8 +4,12 @@ mod build;
 mod data;
 mod export;
 mod info;
+mod junit;
+mod run;
 mod show;
+mod test;
 mod timers;
+mod trace;
 mod verify;
 mod xref;
 
@@ -30,6 +34,8 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Test(arguments) => test::run(&arguments),
     }
 }
 
@@ -79,7 +85,7 @@ fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|error| error.to_string())
 }
 
-fn open(path: &Path, mode: Mode) -> Result<Project, String> {
+pub(crate) fn open(path: &Path, mode: Mode) -> Result<Project, String> {
     let bytes = read_file(path)?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     convert::open(&bytes, &name, mode).map_err(|error| error.to_string())

@@ -1,0 +1,227 @@
+//! `rungs run`: a program in simulated time.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use ladder::{Address, FileType, Image, Project, Value, members_of};
+use sim::scenario::{Literal, parse_duration, value_for};
+use sim::{Machine, Options, Program, Recorder, Unsupported};
+
+use super::test::reasons;
+use super::trace::{Column, Row, RungColumn, writer};
+use super::{ImageChoice, open};
+use crate::args::RunArguments;
+use crate::output::{Error, Outcome};
+
+/// More scans than anyone reads; a slip of units otherwise fills a disk.
+const MOST_SCANS: u128 = 10_000_000;
+
+pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
+    if arguments.watch.is_empty() && arguments.trace_rung.is_empty() {
+        return Err(Error::Use("nothing to show: name addresses with --watch or rungs with --trace-rung".to_owned()));
+    }
+    if arguments.scan.is_zero() || arguments.duration.as_nanos() / arguments.scan.as_nanos() > MOST_SCANS {
+        return Err(Error::Use(format!("--for and --scan must give from 1 to {MOST_SCANS} scans")));
+    }
+    let project = match open(&arguments.program, rss::Mode::Permissive) {
+        Ok(project) => project,
+        Err(why) => {
+            eprintln!("{}: {why}", arguments.program.display());
+            return Ok(Outcome::Unreadable);
+        }
+    };
+    let image = match arguments.image {
+        ImageChoice::Main => Some(&project.main),
+        ImageChoice::Online => project.online.as_ref(),
+        ImageChoice::Autosave => project.autosave.as_ref(),
+    };
+    let Some(image) = image else {
+        eprintln!("{}: the project holds no such image", arguments.program.display());
+        return Ok(Outcome::Finding);
+    };
+    let sets = arguments.set.iter().map(|text| Set::read(&project, text)).collect::<Result<Vec<_>, _>>()?;
+    let rungs = arguments.trace_rung.iter().map(|text| rung(image, text)).collect::<Result<Vec<_>, _>>()?;
+    let unsupported = if arguments.accept_unsupported { Unsupported::Fault } else { Unsupported::Refuse };
+    let options = Options { choices: arguments.simulation.choices(), unsupported, ..Options::default() };
+    let program = match Program::compile(image, &options) {
+        Ok(program) => program,
+        Err(refusals) => {
+            for refusal in &refusals {
+                eprintln!("{}: {refusal}", arguments.program.display());
+            }
+            eprintln!("{}: not run: {} instructions cannot be simulated", arguments.program.display(), refusals.len());
+            return Ok(Outcome::Finding);
+        }
+    };
+    for (why, count) in reasons(program.approximations()) {
+        let times = if count > 1 { format!(" ({count} places)") } else { String::new() };
+        eprintln!("{}: approximate: {why}{times}", arguments.program.display());
+    }
+    let mut simulation = Simulation { machine: Machine::new(program), sets, rungs };
+    simulation.write_initial()?;
+    simulation.machine.enter_run();
+    simulation.write_initial()?;
+    let columns = columns(&project, &simulation.machine, &arguments.watch)?;
+    match &arguments.output {
+        Some(path) => simulation.trace(arguments, columns, create(path, arguments.force)?),
+        None => simulation.trace(arguments, columns, std::io::stdout().lock()),
+    }
+}
+
+fn create(path: &Path, force: bool) -> Result<File, Error> {
+    if path.exists() && !force {
+        return Err(Error::Use(format!("{} exists; --force overwrites it", path.display())));
+    }
+    File::create(path).map_err(|error| Error::Use(format!("{}: {error}", path.display())))
+}
+
+/// An address, or the one a symbol stands for.
+fn address(project: &Project, text: &str) -> Result<Address, Error> {
+    let symbol = || project.main.documentation.by_symbol(text)?.target.direct_address().cloned();
+    let found = Address::parse(text).ok().or_else(symbol);
+    match found {
+        Some(address) if address.is_direct() => Ok(address),
+        Some(_) => Err(Error::Use(format!("{text} is no fixed place"))),
+        None => Err(Error::Use(format!("`{text}` is no address or symbol of this program"))),
+    }
+}
+
+/// A value to write at a time.
+struct Set {
+    text: String,
+    address: Address,
+    literal: Literal,
+    /// `None`: before the first scan.
+    at: Option<Duration>,
+}
+
+impl Set {
+    fn read(project: &Project, text: &str) -> Result<Set, Error> {
+        let wrong = |why: &str| Error::Use(format!("--set {text}: {why}"));
+        let (place, rest) = text.split_once('=').ok_or_else(|| wrong("expected ADDRESS=VALUE"))?;
+        // A string may hold an `@` of its own: what follows the last one is a time only if it reads as one.
+        let timed = rest.rsplit_once('@').and_then(|(value, time)| Some((value, parse_duration(time).ok()?)));
+        let (value, at) = timed.map_or((rest, None), |(value, time)| (value, Some(time)));
+        let literal = match (value.parse::<i64>(), value.parse::<f64>()) {
+            (Ok(integer), _) => Literal::Integer(integer),
+            (_, Ok(float)) => Literal::Float(float),
+            _ => Literal::Text(value.to_owned()),
+        };
+        Ok(Set { text: text.to_owned(), address: address(project, place.trim())?, literal, at })
+    }
+}
+
+/// Reads `4` or `3:4`; the rung must exist.
+fn rung(image: &Image, text: &str) -> Result<RungColumn, Error> {
+    let wrong = |why: String| Error::Use(format!("--trace-rung {text}: {why}"));
+    let (file, number) = text.split_once(':').unwrap_or(("2", text));
+    let (Ok(file), Ok(number)) = (file.parse::<u16>(), number.parse::<u16>()) else {
+        return Err(wrong("expected a rung number, or FILE:RUNG".to_owned()));
+    };
+    let rungs = image.ladder_files().find(|ladder| ladder.number == file).map(|ladder| &ladder.rungs);
+    let rungs = rungs.ok_or_else(|| wrong(format!("program file {file} holds no ladder")))?;
+    let rung = rungs.get(usize::from(number));
+    let rung =
+        rung.ok_or_else(|| wrong(format!("program file {file} has rungs 0 to {}", rungs.len().saturating_sub(1))))?;
+    let text = |instruction| convert::slc::rung::instruction_text(instruction, Some(image.family()));
+    Ok(RungColumn { file, rung: number, instructions: rung.instructions().map(text).collect() })
+}
+
+/// One column per value to follow; elements spread over their members.
+fn columns(project: &Project, machine: &Machine, watch: &[String]) -> Result<Vec<Column>, Error> {
+    let mut columns = Vec::new();
+    for text in watch {
+        let place = address(project, text)?;
+        let missing = |why: sim::AccessError| Error::Use(format!("--watch {text}: {why}"));
+        let value = machine.get(&place).map_err(missing)?;
+        let whole = matches!(value, Value::Timer(_) | Value::Counter(_) | Value::Control(_));
+        if !whole {
+            if matches!(value, Value::Words(_)) {
+                return Err(Error::Use(format!("--watch {text}: name a member of this element")));
+            }
+            columns.push(Column { address: place, sample: value });
+            continue;
+        }
+        let flagged = matches!(place.file_type, FileType::T | FileType::C | FileType::R);
+        for member in members_of(place.file_type).filter(|_| flagged) {
+            let mut part = place.clone().with_word(member.word);
+            if let Some(bit) = member.bit {
+                part = Address { word: None, ..part }.with_bit(bit);
+            }
+            let sample = machine.get(&part).map_err(missing)?;
+            columns.push(Column { address: part, sample });
+        }
+    }
+    Ok(columns)
+}
+
+struct Simulation {
+    machine: Machine,
+    sets: Vec<Set>,
+    rungs: Vec<RungColumn>,
+}
+
+impl Simulation {
+    fn write_initial(&mut self) -> Result<(), Error> {
+        self.write(|set| set.at.is_none())
+    }
+
+    fn write(&mut self, due: impl Fn(&Set) -> bool) -> Result<(), Error> {
+        for set in self.sets.iter().filter(|set| due(set)) {
+            let wrong = |why: String| Error::Use(format!("--set {}: {why}", set.text));
+            let present = self.machine.get(&set.address).map_err(|why| wrong(why.to_string()))?;
+            let value = value_for(&set.literal, &present).map_err(wrong)?;
+            self.machine.set(&set.address, &value).map_err(|why| wrong(why.to_string()))?;
+        }
+        Ok(())
+    }
+
+    /// Scans until the time is over, a row per scan; ends early when the processor stops.
+    fn trace(mut self, arguments: &RunArguments, columns: Vec<Column>, out: impl Write) -> Result<Outcome, Error> {
+        let mut out = BufWriter::new(out);
+        let rungs = std::mem::take(&mut self.rungs);
+        let mut writer = writer(arguments.format, &columns, &rungs, &arguments.program)?;
+        writer.head(&mut out)?;
+        let mut recorder =
+            Recorder { rungs: rungs.iter().map(|rung| (rung.file, rung.rung)).collect(), seen: Vec::new() };
+        let (mut scans, mut dt, mut last_set) = (0u64, Duration::ZERO, None);
+        loop {
+            let now = self.machine.now() + dt;
+            self.write(|set| set.at.is_some_and(|at| at <= now && last_set.is_none_or(|last| at > last)))?;
+            last_set = Some(now);
+            recorder.seen.clear();
+            if recorder.rungs.is_empty() {
+                self.machine.scan(dt);
+            } else {
+                self.machine.scan_traced(dt, &mut recorder);
+            }
+            scans += 1;
+            dt = arguments.scan;
+            // Every column was read once before the first scan: the places exist.
+            let values =
+                columns.iter().map(|c| self.machine.get(&c.address).unwrap_or_else(|_| c.sample.clone())).collect();
+            let row = Row { scan: scans, time: self.machine.now(), values, flows: &recorder.seen };
+            let last = self.machine.now() + arguments.scan > arguments.duration || !self.machine.is_executing();
+            writer.row(&mut out, &row, last)?;
+            if last {
+                break;
+            }
+        }
+        writer.foot(&mut out, &self.machine)?;
+        out.flush()?;
+        if let Some(fault) = self.machine.fault() {
+            eprintln!(
+                "{}: scan {scans}, {:.3} s: {fault}",
+                arguments.program.display(),
+                self.machine.now().as_secs_f64()
+            );
+            return Ok(Outcome::Finding);
+        }
+        if !self.machine.is_executing() {
+            eprintln!("{}: the program suspended the processor in scan {scans}", arguments.program.display());
+        }
+        Ok(Outcome::Done)
+    }
+}
