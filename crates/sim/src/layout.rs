@@ -16,8 +16,6 @@ pub(crate) struct FileInfo {
     pub(crate) elements: u32,
     /// Words per element.
     pub(crate) size: u32,
-    /// One of the data table files, which indirect and indexed addresses can run through.
-    pub(crate) user: bool,
 }
 
 impl FileInfo {
@@ -96,7 +94,7 @@ impl Layout {
                 block.resize(block.len().max(start as usize + status::WORDS), 0);
             }
             let user = !file.file_type.is_function_file();
-            layout.files.push(FileInfo { file_type: file.file_type, number: file.number, start, elements, size, user });
+            layout.files.push(FileInfo { file_type: file.file_type, number: file.number, start, elements, size });
             if user {
                 layout.user_end = block.len() as u32;
             }
@@ -156,7 +154,7 @@ impl Layout {
             block.resize(block.len() + usize::from(words), 0);
             // The number of a module file is its slot: several of one type never collide.
             let elements = u32::from(words);
-            self.files.push(FileInfo { file_type, number: slot, start, elements, size: 1, user: false });
+            self.files.push(FileInfo { file_type, number: slot, start, elements, size: 1 });
         }
     }
 

@@ -2,6 +2,7 @@
 
 use instr::exec::expression::Step;
 use instr::exec::function::Function;
+use instr::exec::stack::Order;
 use ladder::{Family, FileType, TimeBase};
 
 use crate::family::Traits;
@@ -131,6 +132,8 @@ pub(crate) struct Start {
     pub(crate) at: StartAt,
     /// Words per element there.
     pub(crate) size: u32,
+    /// What its elements are as numbers; words unless long words or floats.
+    pub(crate) kind: instr::exec::Width,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,6 +178,29 @@ pub(crate) enum Stepped {
 pub(crate) enum SteppedTarget {
     Value(Target),
     File(Start),
+}
+
+/// A port instruction.
+#[derive(Clone, Debug)]
+pub(crate) struct Port {
+    pub(crate) what: PortAction,
+    pub(crate) channel: u16,
+    pub(crate) string: Option<Start>,
+    pub(crate) control: Start,
+    pub(crate) masks: Option<(Source, Source)>,
+}
+
+/// A message instruction.
+#[derive(Clone, Debug)]
+pub(crate) struct Message {
+    pub(crate) at: Start,
+    /// The local data.
+    pub(crate) local: Option<Start>,
+    /// A block of integers, as on SLC 500 and MicroLogix 1000.
+    pub(crate) slc: bool,
+    /// Number among the message instructions.
+    pub(crate) id: u32,
+    pub(crate) setup: Vec<(String, String)>,
 }
 
 /// Operations that need more than a word and a mask.
@@ -292,6 +318,11 @@ pub(crate) enum Block {
         dest: Start,
         length: Source,
     },
+    FillElement {
+        source: Start,
+        dest: Start,
+        length: Source,
+    },
     Shift {
         left: bool,
         file: Start,
@@ -305,7 +336,7 @@ pub(crate) enum Block {
         long: bool,
     },
     Unload {
-        last_in_first_out: bool,
+        order: Order,
         file: Start,
         dest: Target,
         control: Start,
@@ -363,25 +394,13 @@ pub(crate) enum Block {
         dest: Target,
     },
     // Ports and messages.
-    Port {
-        what: PortAction,
-        channel: u16,
-        string: Option<Start>,
-        control: Start,
-        masks: Option<(Source, Source)>,
-    },
+    Port(Port),
     ClearPort {
         channel: u16,
         transmit: bool,
         receive: bool,
     },
-    Message {
-        at: Start,
-        local: Option<Start>,
-        slc: bool,
-        id: u32,
-        setup: Vec<(String, String)>,
-    },
+    Message(Message),
     // Processor.
     ImmediateInput {
         first: u32,
@@ -412,9 +431,8 @@ pub(crate) enum Block {
         at: Start,
         process: Source,
         control: Target,
-        control_read: Source,
+        present: Source,
         slot: u32,
-        slc: bool,
     },
     HighSpeedLoad {
         counter: u16,
@@ -427,10 +445,8 @@ pub(crate) enum Block {
     HighSpeedCounter {
         word: u32,
     },
-    Pulse {
-        file_type: FileType,
-        number: u16,
-    },
+    /// A pulse output: nothing of it is visible to the program.
+    Pulse,
     ClockRead {
         dest: Target,
     },
@@ -442,10 +458,7 @@ pub(crate) enum Block {
     ClockAdjust {
         slot: u32,
     },
-    Ramp {
-        at: Start,
-        dest: Target,
-    },
+
     Idle,
     /// Executing it is fault 0031.
     Unsupported,
@@ -498,7 +511,6 @@ pub(crate) enum PortAction {
 #[derive(Clone, Debug)]
 pub(crate) struct CodeFile {
     pub(crate) number: u16,
-    pub(crate) start: u32,
     pub(crate) rungs: u16,
 }
 
@@ -561,6 +573,11 @@ pub(crate) struct Compiled {
 }
 
 impl Compiled {
+    /// Some instruction copies files before it works.
+    pub(crate) fn needs_scratch(&self) -> bool {
+        self.blocks.iter().any(|block| matches!(block, Block::FileBits { .. }))
+    }
+
     pub(crate) fn instructions(&self) -> usize {
         self.before.last().map_or(0, |count| *count as usize)
     }

@@ -4,6 +4,8 @@
 
 use std::fmt;
 
+use instr::exec::process::Loop;
+
 use crate::fault::MajorFault;
 use crate::machine::Mode;
 use crate::op::Compiled;
@@ -52,10 +54,14 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
     }
     for pid in &state.pids {
         long(&mut out, pid.last);
-        out.push(pid.running.into());
-        for value in pid.memory {
-            long(&mut out, value.to_bits());
-        }
+        let memory = pid.memory;
+        out.push(memory.running.into());
+        long(&mut out, memory.waited);
+        long(&mut out, memory.last.to_bits());
+        long(&mut out, memory.rate.to_bits());
+        out.extend_from_slice(&memory.setpoint.to_le_bytes());
+        out.extend_from_slice(&memory.last_error.to_le_bytes());
+        out.push(memory.crossed.into());
     }
     for message in &state.messages {
         long(&mut out, message.started);
@@ -104,10 +110,17 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
         *timer = TimerSlot { last: reader.long()?, part: reader.long()?, fresh: reader.flag()? };
     }
     for pid in &mut state.pids {
-        *pid = PidSlot { last: reader.long()?, running: reader.flag()?, memory: [0.0; 6] };
-        for value in &mut pid.memory {
-            *value = f64::from_bits(reader.long()?);
-        }
+        let last = reader.long()?;
+        let memory = Loop {
+            running: reader.flag()?,
+            waited: reader.long()?,
+            last: f64::from_bits(reader.long()?),
+            rate: f64::from_bits(reader.long()?),
+            setpoint: reader.word()? as i16,
+            last_error: reader.take().map(i32::from_le_bytes)?,
+            crossed: reader.flag()?,
+        };
+        *pid = PidSlot { last, memory };
     }
     for message in &mut state.messages {
         *message = MessageSlot { started: reader.long()?, active: reader.flag()? };

@@ -15,13 +15,11 @@ pub(crate) struct TimerSlot {
     pub(crate) fresh: bool,
 }
 
-/// What a PID instruction keeps between updates.
+/// What a PID instruction keeps between executions: the time of the last one and the loop's memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PidSlot {
     pub(crate) last: u64,
-    pub(crate) running: bool,
-    /// The caller of the pure functions keeps their state here.
-    pub(crate) memory: [f64; 6],
+    pub(crate) memory: instr::exec::process::Loop,
 }
 
 /// A message or ASCII operation under way.
@@ -81,6 +79,8 @@ pub(crate) struct State {
     pub(crate) events: [u8; 8],
     /// Indirect addresses that left their file, so far.
     pub(crate) strays: u64,
+    /// Buffer of instructions that need copies of files; empty between instructions.
+    pub(crate) scratch: Vec<u16>,
 }
 
 impl State {
@@ -109,6 +109,7 @@ impl State {
             timed: TimedInterrupt::default(),
             events: [0; 8],
             strays: 0,
+            scratch: Vec::with_capacity(if program.needs_scratch() { 3 * program.data.len() } else { 0 }),
         }
     }
 }

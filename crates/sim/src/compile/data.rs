@@ -1,6 +1,7 @@
 //! File, sequencer and string instructions.
 
-use ladder::FileType;
+use instr::exec::stack::Order;
+use ladder::{FileType, Operand};
 
 use super::Compiler;
 use super::instruction::Given;
@@ -16,9 +17,13 @@ impl Compiler<'_> {
                 self.act(Block::Copy { source, dest, length, words: name == "CPW" })
             }
             "FLL" => {
-                let source = self.source(given.at(0), false)?;
                 let dest = self.start(given.at(1))?;
                 let length = self.source(given.at(2), false)?;
+                if self.is_element(given.at(0)) {
+                    let source = self.start(given.at(0))?;
+                    return self.act(Block::FillElement { source, dest, length });
+                }
+                let source = self.source(given.at(0), dest.kind == instr::exec::Width::Long)?;
                 self.act(Block::Fill { source, dest, length })
             }
             "BSL" | "BSR" => {
@@ -39,7 +44,8 @@ impl Compiler<'_> {
                 let dest = self.target(given.at(1))?;
                 let control = self.element(given.at(2), FileType::R)?;
                 let long = self.is_long_file(given, 0);
-                self.always(Block::Unload { last_in_first_out: name == "LFU", file, dest, control, long })
+                let order = if name == "LFU" { Order::LastIn } else { Order::FirstIn };
+                self.always(Block::Unload { order, file, dest, control, long })
             }
             "SQO" => {
                 let file = self.start(given.at(0))?;
@@ -74,8 +80,14 @@ impl Compiler<'_> {
         }
     }
 
+    /// A whole element of several words.
+    fn is_element(&self, operand: Option<&Operand>) -> bool {
+        let location = operand.and_then(Operand::address).and_then(|address| self.layout.locate(address));
+        location.is_some_and(|location| location.width == crate::layout::Width::Element)
+    }
+
     fn is_long_file(&self, given: &Given<'_>, index: usize) -> bool {
-        given.at(index).and_then(ladder::Operand::address).is_some_and(|address| address.file_type == FileType::L)
+        given.at(index).and_then(Operand::address).is_some_and(|address| address.file_type == FileType::L)
     }
 
     pub(super) fn ascii(&mut self, name: &str, given: &Given<'_>) -> Result<()> {
@@ -142,6 +154,6 @@ impl Compiler<'_> {
             _ => (Some(self.element(given.at(1), FileType::ST)?), None, 2),
         };
         let control = self.element(given.at(control), FileType::R)?;
-        self.always(Block::Port { what, channel, string, control, masks })
+        self.always(Block::Port(Port { what, channel, string, control, masks }))
     }
 }

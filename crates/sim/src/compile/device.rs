@@ -77,40 +77,33 @@ impl Compiler<'_> {
             }
             "HSL" | "RAC" | "HSC" | "HSE" | "HSD" => self.high_speed(name, given, instruction),
             "PTO" | "PWM" => {
-                let number = match given.at(0) {
-                    Some(Operand::Constant(constant)) => constant.as_integer().and_then(|n| u16::try_from(n).ok()),
-                    Some(Operand::Address(address)) => address.element.number(),
-                    _ => None,
-                };
-                let number = number.ok_or_else(|| unusable(given.at(0), "an output number"))?;
-                let file_type = if name == "PTO" { FileType::PTO } else { FileType::PWM };
                 self.approximate(
                     instruction,
                     "no pulses are produced: the layout of its function file is not published, so none of its bits change",
                 );
-                self.always(Block::Pulse { file_type, number })
+                self.always(Block::Pulse)
             }
             _ => Err("this instruction is not simulated".to_owned()),
         }
     }
 
     fn pid(&mut self, given: &Given<'_>, instruction: &Instruction) -> Result<()> {
-        let slc = match given.at(0).and_then(Operand::address) {
-            Some(address) if address.file_type == FileType::PD => false,
-            Some(address) if address.file_type == FileType::N => true,
-            _ => return Err(unusable(given.at(0), "a PID element or block")),
-        };
+        let address = given.at(0).and_then(Operand::address);
+        if !address.is_some_and(|address| matches!(address.file_type, FileType::PD | FileType::N)) {
+            return Err(unusable(given.at(0), "a PID element or block"));
+        }
         let at = self.start(given.at(0))?;
         let process = self.source(given.at(1), false)?;
-        let control_read = self.source(given.at(2), false)?;
+        let present = self.source(given.at(2), false)?;
         let control = self.target(given.at(2))?;
         let slot = self.pids;
         self.pids += 1;
         self.approximate(
             instruction,
-            "the published equation is computed exactly; the controller's internal rounding and anti-windup are not published",
+            "the published equation is computed in double precision; the controller's own rounding, and words 10 and 17 to \
+             22 of its block, are not published",
         );
-        self.always(Block::Pid { at, process, control, control_read, slot, slc })
+        self.always(Block::Pid { at, process, control, present, slot })
     }
 
     fn message(&mut self, given: &Given<'_>, instruction: &Instruction) -> Result<()> {
@@ -129,7 +122,7 @@ impl Compiler<'_> {
             instruction,
             "the partner is whatever the caller connects; without one every message times out with error 37h",
         );
-        self.always(Block::Message { at, local, slc: file_type == FileType::N, id, setup })
+        self.always(Block::Message(Message { at, local, slc: file_type == FileType::N, id, setup }))
     }
 
     fn high_speed(&mut self, name: &str, given: &Given<'_>, instruction: &Instruction) -> Result<()> {

@@ -102,7 +102,7 @@ impl Compiler<'_> {
             }
             entries[number] = Some(start);
             let rungs = u16::try_from(file.rungs.len()).unwrap_or(u16::MAX);
-            files.push(CodeFile { number: file.number, start, rungs });
+            files.push(CodeFile { number: file.number, rungs });
         }
         if entries.get(2).copied().flatten().is_none() {
             self.going_to_run = Some((code::NO_MAIN, OpSite { file: 2, rung: 0, instruction: NO_INSTRUCTION }));

@@ -81,11 +81,11 @@ impl Compiler<'_> {
             let location = self.layout.locate(&plain).ok_or_else(|| self.missing(&plain))?;
             let info = self.layout.files.get(location.file).ok_or_else(|| self.missing(&plain))?;
             let at = StartAt::Fixed { word: location.word, end: info.end() };
-            return Ok(Start { at, size: info.size });
+            return Ok(Start { at, size: info.size, kind: kind_of_file(info.file_type) });
         }
         let reference = self.reference(&plain)?;
         let size = self.size_of(address.file_type);
-        Ok(Start { at: StartAt::At(reference), size })
+        Ok(Start { at: StartAt::At(reference), size, kind: kind_of_file(address.file_type) })
     }
 
     /// A timer, counter or control element.
@@ -208,5 +208,13 @@ pub(super) fn unusable(operand: Option<&Operand>, wanted: &str) -> String {
         Some(Operand::Unset) => format!("an operand was never entered: {wanted}"),
         Some(Operand::Symbol(symbol)) => format!("symbol {symbol} has no address"),
         Some(other) => format!("{other} stands where {wanted} is needed"),
+    }
+}
+
+fn kind_of_file(file_type: FileType) -> instr::exec::Width {
+    match file_type {
+        FileType::F => instr::exec::Width::Float,
+        FileType::L => instr::exec::Width::Long,
+        _ => instr::exec::Width::Word,
     }
 }

@@ -234,7 +234,7 @@ impl Core<'_> {
     pub(crate) fn events<W: Watch>(&mut self, watch: &mut W) {
         if self.p.traits.mx() {
             let timed = self.timed_file();
-            for at in timed {
+            if let Some(at) = timed {
                 while self.s.timed.pending > 0 && self.word(at + FLAGS) & flag::ENABLE != 0 && self.executing() {
                     self.s.timed.pending -= 1;
                     self.put_bits(at + FLAGS, flag::PENDING, self.s.timed.pending > 0);

@@ -119,7 +119,7 @@ impl Core<'_> {
     }
 
     /// TOD; into S:13 the whole register is the destination.
-    pub(crate) fn to_bcd(&mut self, source: Source, dest: Target, register: bool) -> Exec<()> {
+    pub(crate) fn encode_bcd(&mut self, source: Source, dest: Target, register: bool) -> Exec<()> {
         let value = self.word_of(source)?;
         let outcome = conversion::tod(value);
         if register {
@@ -133,7 +133,7 @@ impl Core<'_> {
         self.leave(dest, outcome)
     }
 
-    pub(crate) fn from_bcd(&mut self, source: Source, dest: Target, register: bool) -> Exec<()> {
+    pub(crate) fn decode_bcd(&mut self, source: Source, dest: Target, register: bool) -> Exec<()> {
         let to = self.kind(dest);
         let outcome = if register {
             conversion::frd_register(self.register(), to, self.mode())

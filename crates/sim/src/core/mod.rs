@@ -1,11 +1,15 @@
 //! Execution: the flat list over the state.
 
 mod block;
+mod device;
+mod files;
 mod interrupt;
 mod math;
+mod message;
 mod operand;
 mod run;
 mod scan;
+mod text;
 mod timer;
 
 use crate::op::Compiled;

@@ -204,7 +204,7 @@ impl Core<'_> {
     }
 
     /// Year, month, day, hour, minute, second from `first` on; all zero means off.
-    fn move_clock(&mut self, first: u32, weekday: u32, seconds: u64) {
+    pub(crate) fn move_clock(&mut self, first: u32, weekday: u32, seconds: u64) {
         let read = |core: &Self, index: u32| u64::from(core.word(first + index));
         let (year, month, day) = (read(self, 0), read(self, 1), read(self, 2));
         if year == 0 || !(1..=12).contains(&month) || !(1..=31).contains(&day) || year > 9999 {
