@@ -79,7 +79,8 @@ pub fn write_symbols(documentation: &Documentation, writer: impl Write) -> io::R
 
 /// Adds the rows of a table to the documentation of an image; a row replaces what the image has for
 /// the same target. Columns are found by their names in the first row; only `address` must be there,
-/// so a table kept by hand can be short. Rows without symbol and description are kept too.
+/// so a table kept by hand can be short. Program and data files without a name or description of
+/// their own take it from their rows. Rows without symbol and description are kept too.
 ///
 /// # Errors
 /// The first row that is no row of such a table; the image is then unchanged.
@@ -98,6 +99,7 @@ pub fn read_symbols(text: &str, image: &mut Image) -> Result<(), CsvError> {
         }
     }
     image.documentation = merged(&image.documentation, entries, comments);
+    crate::tables::name_files(image);
     Ok(())
 }
 

@@ -12,6 +12,8 @@ use sha2::{Digest, Sha256};
 pub enum OpenError {
     /// Not a project file, or one too damaged to read.
     File(rss::Error),
+    /// A text that is no SLC file.
+    Text(crate::slc::FileError),
     /// A JSON document that is no project.
     Json(crate::json::JsonError),
 }
@@ -20,6 +22,7 @@ impl fmt::Display for OpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             OpenError::File(error) => error.fmt(f),
+            OpenError::Text(error) => error.fmt(f),
             OpenError::Json(error) => error.fmt(f),
         }
     }
@@ -41,6 +44,10 @@ pub fn open(bytes: &[u8], file_name: &str, mode: Mode) -> Result<Project, OpenEr
     };
     match rss::Project::read(bytes, mode) {
         Ok(file) => strict(crate::from_rss::project(&file, source), mode),
+        Err(rss::Error::Foreign(rss::Foreign::SlcText)) => {
+            let project = crate::slc::project::read(&crate::slc::decode(bytes)).map_err(OpenError::Text)?;
+            strict(Project { source, ..project }, mode)
+        }
         Err(error) => match json_text(bytes) {
             Some(text) => crate::json::from_json(text).map_err(OpenError::Json),
             None => Err(OpenError::File(error)),

@@ -1,6 +1,6 @@
 //! Data tables a program needs before it can be stored or run.
 
-use ladder::{DataFile, Diagnostic, FileType, Image, IoRange, Severity};
+use ladder::{DataFile, Diagnostic, FileType, Image, IoRange, Severity, Target};
 
 use crate::to_rss::program::addresses;
 
@@ -16,6 +16,48 @@ const STANDARD: [(FileType, &str); 8] = [
     (FileType::N, "INTEGER"),
 ];
 
+/// S:3, whose high byte is the watchdog in units of 10 ms.
+const WATCHDOG_WORD: usize = 3;
+/// 100 ms, what all known projects of most processors have. 0 would stop the processor at once.
+const WATCHDOG: u16 = 0x0A00;
+
+/// Characters of a documentation line.
+const LINE: usize = 20;
+
+/// Gives program and data files the names and descriptions that the documentation holds for them,
+/// where they have none of their own. Stored projects keep a copy of them there.
+pub fn name_files(image: &mut Image) {
+    for file in &mut image.program_files {
+        let entry = image.documentation.entry(&Target::ProgramFile(file.number));
+        if let Some(entry) = entry.filter(|_| file.description.is_empty()) {
+            file.description = joined(&entry.description);
+        }
+    }
+    for file in &mut image.data_files {
+        let Some(entry) = image.documentation.entry(&Target::DataFile(file.number)) else { continue };
+        let Some((name, description)) = entry.description.split_first() else { continue };
+        if file.name.is_empty() {
+            file.name.clone_from(name);
+        }
+        if file.description.is_empty() {
+            file.description = joined(description);
+        }
+    }
+}
+
+/// Lines cut at the full width go on without a blank; lines written by hand get one.
+fn joined(lines: &[String]) -> String {
+    let mut text = String::new();
+    for (index, line) in lines.iter().enumerate() {
+        let cut = index.checked_sub(1).and_then(|before| lines.get(before)).is_none_or(|l| l.chars().count() == LINE);
+        if !cut {
+            text.push(' ');
+        }
+        text.push_str(line);
+    }
+    text
+}
+
 /// Adds the files every processor has and makes tables as large as the program's direct addresses
 /// need. What was added is reported; existing values never change.
 pub fn complete(image: &mut Image, notes: &mut Vec<Diagnostic>) {
@@ -23,8 +65,18 @@ pub fn complete(image: &mut Image, notes: &mut Vec<Diagnostic>) {
         if image.data_files.iter().all(|file| file.number != number || is_module_file(file)) {
             let elements = standard_elements(image, *file_type);
             let mut file = DataFile::new(*file_type, number, elements);
-            (*name).clone_into(&mut file.name);
+            if *file_type == FileType::S
+                && let Some(watchdog) = file.words.get_mut(WATCHDOG_WORD)
+            {
+                *watchdog = WATCHDOG;
+            }
             image.data_files.push(file);
+        }
+        // Text forms hold no names of data files; these are what a new project has.
+        for file in image.data_files.iter_mut().filter(|file| file.number == number && file.file_type == *file_type) {
+            if file.name.is_empty() {
+                (*name).clone_into(&mut file.name);
+            }
         }
     }
     let mut needs = std::collections::BTreeMap::new();

@@ -158,7 +158,12 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
     line("Processor", &name)?;
     line("Processor name", &processor.project_name)?;
     line("Program ID", &processor.program_id.map(|id| format!("{id:x}")).unwrap_or_default())?;
-    line("Saved by", [source.application.as_str(), source.saved_by.as_str()].join(" ").trim())?;
+    let saved_by = match source.application.as_str() {
+        // Our own writer states the version whose format it follows.
+        "rungs" => format!("rungs, in the format of RSLogix {}", source.saved_by),
+        application => [application, source.saved_by.as_str()].join(" ").trim().to_owned(),
+    };
+    line("Saved by", &saved_by)?;
     line("Saved at", source.saved_at.as_deref().unwrap_or(""))?;
     line("Images", &images(opened).join(", "))?;
     line("Route", &processor.route)?;
@@ -198,6 +203,9 @@ fn print_io(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
     writeln!(out, "\n  I/O configuration")?;
     if let Some(unknown) = &image.io.unknown {
         writeln!(out, "    {unknown}")?;
+    }
+    if !image.io.base_unit.is_empty() {
+        writeln!(out, "    Base unit         {}  (inferred)", image.io.base_unit)?;
     }
     let mut table = Columns::new(&["Slot", "Module", "Description", "Inputs", "Outputs", "Identity", "Evidence"]);
     for slot in &image.io.slots {

@@ -96,10 +96,9 @@ fn module(module: &SlotModule, model: u16) -> Module {
     match module {
         SlotModule::Base(unit) => {
             let processor = tables::processor_model(model);
-            let variant = unit.letters().map(|letters| format!(", base unit {letters}")).unwrap_or_default();
             Module {
                 catalog: processor.map(|p| p.catalog.to_owned()),
-                description: format!("{}{variant}", processor.map_or("controller", |p| p.name)),
+                description: processor.map_or("controller", |p| p.name).to_owned(),
                 identity: format!("base unit 0x{:04X}", unit.0),
                 confidence: processor.map_or(Confidence::Unknown, |p| confidence(p.family_evidence)),
             }

@@ -124,13 +124,9 @@ impl Comments {
     }
 
     /// The comments no rung asked for, in stored order.
-    pub(crate) fn detached(mut self) -> Vec<Comment> {
-        let order = std::mem::take(&mut self.order);
-        order
-            .into_iter()
-            .filter_map(|id| self.by_id.remove(&id))
-            .filter_map(|(comment, shown)| (!shown).then_some(comment))
-            .collect()
+    pub(crate) fn detached(&self) -> Vec<Comment> {
+        let stored = self.order.iter().filter_map(|id| self.by_id.get(id));
+        stored.filter(|(_, shown)| !shown).map(|(comment, _)| comment.clone()).collect()
     }
 }
 

@@ -22,7 +22,7 @@ use documentation::Comments;
 /// Reads every image of a project file into the model. `source` names the file; the version and
 /// times are filled in here.
 pub fn project(file: &rss::Project, source: Source) -> Project {
-    let mut reader = ImageReader { file, diagnostics: Vec::new() };
+    let mut reader = ImageReader { file, comments: Comments::default(), diagnostics: Vec::new() };
     for deviation in file.deviations() {
         reader.diagnostics.push(diagnostic(Severity::Error, deviation));
     }
@@ -86,6 +86,8 @@ impl Notes<'_> {
 
 struct ImageReader<'f> {
     file: &'f rss::Project,
+    /// Rung comments of the main image: the online image refers to them too.
+    comments: Comments,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -130,9 +132,10 @@ impl<'f> ImageReader<'f> {
         }
         self.data(kind, &mut image);
         // The online image has no documentation of its own; its rungs refer to the main one's.
-        let database_of = if kind == ImageKind::Online { ImageKind::Main } else { kind };
-        let database = self.database(database_of, kind);
-        let mut comments = database.as_ref().map(Comments::new).unwrap_or_default();
+        let mut comments = match kind {
+            ImageKind::Online => std::mem::take(&mut self.comments),
+            _ => self.documentation(kind, &mut image),
+        };
         if let Some(record) = self.read::<ProgramFiles<'_>>(kind, StreamKind::ProgramFiles) {
             let mut notes = Notes {
                 stream: StreamKind::ProgramFiles.path(kind),
@@ -142,24 +145,23 @@ impl<'f> ImageReader<'f> {
             };
             image.program_files = program::program_files(&record, &mut comments, &mut notes);
         }
-        if let Some(database) = &database
-            && kind != ImageKind::Online
-        {
-            image.documentation = documentation::documentation(database);
+        if kind != ImageKind::Online {
             image.documentation.detached_comments = comments.detached();
+        }
+        if kind == ImageKind::Main {
+            self.comments = comments;
         }
         image
     }
 
-    /// The database is read for the image it belongs to; reading it again for the online image must
-    /// not report its deviations twice.
-    fn database(&mut self, database_of: ImageKind, reader: ImageKind) -> Option<Database<'f>> {
-        let reported = self.diagnostics.len();
-        let database = self.read::<Database<'_>>(database_of, StreamKind::MemDatabase);
-        if database_of != reader {
-            self.diagnostics.truncate(reported);
-        }
-        database
+    /// The rung comments of an image; its other documentation goes into the image. The record, the
+    /// largest of all, is gone before the programs are read.
+    fn documentation(&mut self, kind: ImageKind, image: &mut Image) -> Comments {
+        let Some(database) = self.read::<Database<'_>>(kind, StreamKind::MemDatabase) else {
+            return Comments::default();
+        };
+        image.documentation = documentation::documentation(&database);
+        Comments::new(&database)
     }
 
     fn data(&mut self, kind: ImageKind, image: &mut Image) {

@@ -6,7 +6,7 @@ use ladder::{Comment, CommentOwner, Documentation, Target};
 use rss::database::{self, Database, Entry, Header, LINES, Mnemonic};
 use rss::{Error, Result, Text};
 
-use super::{owned, text};
+use super::{Notes, owned, text};
 use crate::from_rss::documentation::key;
 
 /// Rung comments as the rungs hand them in, with the ids they get.
@@ -45,7 +45,14 @@ impl CommentWriter {
     }
 }
 
-pub(super) fn database(documentation: &Documentation, mut comments: CommentWriter) -> Result<Database<'_>> {
+/// Longest symbol and widest description line that RSLogix takes.
+const WIDTH: usize = 20;
+
+pub(super) fn database<'a>(
+    documentation: &'a Documentation,
+    mut comments: CommentWriter,
+    notes: &mut Notes,
+) -> Result<Database<'a>> {
     for comment in &documentation.detached_comments {
         let key = match &comment.owner {
             CommentOwner::Rung { file, rung } => format!("RUNG{file:06}-{rung:06}"),
@@ -58,11 +65,20 @@ pub(super) fn database(documentation: &Documentation, mut comments: CommentWrite
     for entry in documentation.entries() {
         let id = number(addresses.len() + 1)?;
         ids.entry(&entry.target).or_insert(id);
+        let wide = |text: &String| text.chars().count() > WIDTH;
+        let of_file = matches!(entry.target, Target::ProgramFile(_) | Target::DataFile(_));
+        if wide(&entry.symbol) || (!of_file && entry.description.iter().any(wide)) {
+            let place = format!("documentation of {}", entry.target);
+            notes.warning(
+                place,
+                format!("RSLogix takes symbols and description lines of {WIDTH} characters; this is longer"),
+            );
+        }
         addresses.push(Entry {
             id,
             key: owned(key(&entry.target))?,
             symbol: text(&entry.symbol)?,
-            lines: lines(&entry.description)?,
+            lines: if of_file { pieces(&entry.description)? } else { lines(&entry.description)? },
             address_id: id,
             ..Entry::default()
         });
@@ -105,6 +121,21 @@ fn order(id: u32) -> (u32, std::cmp::Reverse<u32>) {
 
 fn number(count: usize) -> Result<u32> {
     u32::try_from(count).map_err(|_| Error::Unwritable(format!("{count} entries of documentation")))
+}
+
+/// Descriptions of files are stored cut into pieces of the line's width, without regard to words.
+fn pieces(description: &[String]) -> Result<[Text<'static>; LINES]> {
+    let mut stored: [Text<'static>; LINES] = Default::default();
+    let cut = description.iter().flat_map(|line| {
+        let characters: Vec<char> = line.chars().collect();
+        let pieces: Vec<String> = characters.chunks(WIDTH).map(|piece| piece.iter().collect()).collect();
+        // A blank line keeps its place.
+        if pieces.is_empty() { vec![String::new()] } else { pieces }
+    });
+    for (place, piece) in stored.iter_mut().zip(cut) {
+        *place = owned(piece)?;
+    }
+    Ok(stored)
 }
 
 fn lines(lines: &[String]) -> Result<[Text<'_>; LINES]> {

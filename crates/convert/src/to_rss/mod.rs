@@ -60,7 +60,7 @@ fn streams(project: &Project, image: &Image, model: &ProcessorModel, notes: &mut
     let mut comments = documentation::CommentWriter::default();
     let programs = program::files(image, &mut comments, notes)?;
     writer.record(StreamKind::ProgramFiles, &programs)?;
-    writer.record(StreamKind::MemDatabase, &documentation::database(&image.documentation, comments)?)?;
+    writer.record(StreamKind::MemDatabase, &documentation::database(&image.documentation, comments, notes)?)?;
     writer.record(StreamKind::Compiler, &Compiler::default())?;
     let [full, version, build] = FORMAT_VERSION.map(|text| Text::from_bytes(text.as_bytes()));
     writer.record(StreamKind::Version, &Version { full, version, build })?;

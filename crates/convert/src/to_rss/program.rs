@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use instr::{Form, Instruction as Definition, Stored};
 use ladder::{
-    Element, Family, FileType, Image, Instruction, Mnemonic, Operand, ProgramFile, ProgramFileKind, Rung, TimeBase,
+    Address, Constant, Element, Family, FileType, Image, Instruction, Mnemonic, Operand, ProgramFile, ProgramFileKind,
+    Rung, TimeBase, Value,
 };
 use rss::program::{self, Branch, Item, LadFile, Leg, ProgramFiles, mark};
 use rss::{Error, Result, Text};
@@ -14,7 +15,7 @@ use super::{Notes, owned, text};
 use crate::{code, message};
 
 pub(super) fn files<'a>(image: &'a Image, comments: &mut CommentWriter, notes: &mut Notes) -> Result<ProgramFiles<'a>> {
-    let mut writer = ProgramWriter { family: image.family(), comments, notes };
+    let mut writer = ProgramWriter { image, comments, notes };
     let last = image.program_files.iter().map(|file| file.number).max().unwrap_or(2).max(2);
     let mut files = Vec::with_capacity(usize::from(last) + 1);
     for number in 0..=last {
@@ -32,7 +33,7 @@ fn unused_flags(number: u16) -> u16 {
 }
 
 struct ProgramWriter<'n> {
-    family: Family,
+    image: &'n Image,
     comments: &'n mut CommentWriter,
     notes: &'n mut Notes,
 }
@@ -112,7 +113,7 @@ impl ProgramWriter<'_> {
         };
         let definition = instr::by_mnemonic(name)
             .ok_or_else(|| Error::Unwritable(format!("{place}: {name} is no instruction of these processors")))?;
-        let form = form(definition, instruction, self.family).ok_or_else(|| {
+        let form = form(definition, instruction, self.image.family()).ok_or_else(|| {
             Error::Unwritable(format!("{place}: {name} with {} operands has no known form", instruction.operands.len()))
         })?;
         let Some(opcode) = form.opcode else {
@@ -133,7 +134,7 @@ impl ProgramWriter<'_> {
             }
         };
         Ok(program::Instruction {
-            operands: texts(form, instruction, code.as_deref())?.into(),
+            operands: texts(self.image, definition, form, instruction, code.as_deref())?.into(),
             has_code: u16::from(code.is_some()),
             opcode,
             code: Cow::Owned(code.unwrap_or_default()),
@@ -176,29 +177,37 @@ pub(crate) fn form(
 }
 
 /// Operand texts, each source followed by its displayed value where the form has one.
-fn texts<'a>(form: &Form, instruction: &'a Instruction, code: Option<&[u8]>) -> Result<Vec<Text<'a>>> {
+fn texts<'a>(
+    image: &Image,
+    definition: &Definition,
+    form: &Form,
+    instruction: &'a Instruction,
+    code: Option<&[u8]>,
+) -> Result<Vec<Text<'a>>> {
     let mut texts = Vec::with_capacity(form.string_count());
-    for (index, (definition, operand)) in form.operands.iter().zip(&instruction.operands).enumerate() {
+    for (index, (operand_definition, operand)) in form.operands.iter().zip(&instruction.operands).enumerate() {
         texts.push(match operand {
             // Stored with a blank at both ends.
             Operand::Expression(expression) => owned(format!(" {expression} "))?,
             Operand::Symbol(symbol) => text(symbol)?,
             other => owned(other.to_string())?,
         });
-        if definition.stored == Stored::SourceAndValue {
-            texts.push(owned(value(form, instruction, index, code))?);
+        if operand_definition.stored == Stored::SourceAndValue {
+            let shown = instruction.displayed(index).map(str::to_owned);
+            let value = shown.or_else(|| match operand {
+                Operand::Constant(constant) => Some(constant_value(form, index, constant, code)),
+                Operand::Address(address) => address_value(image, definition, address),
+                _ => None,
+            });
+            texts.push(owned(value.unwrap_or_else(|| "?".to_owned()))?);
         }
     }
     Ok(texts)
 }
 
-/// What stands beside a source. A constant repeats itself as the instruction sees it, which is how a
-/// reader tells `10` from `10.0`; the value of an address is unknown until the program is on line.
-fn value(form: &Form, instruction: &Instruction, index: usize, code: Option<&[u8]>) -> String {
-    if let Some(value) = instruction.displayed(index) {
-        return value.to_owned();
-    }
-    let Some(Operand::Constant(constant)) = instruction.operands.get(index) else { return "?".to_owned() };
+/// A constant repeats itself as the instruction sees it, which is how a reader tells `10` from
+/// `10.0`.
+fn constant_value(form: &Form, index: usize, constant: &Constant, code: Option<&[u8]>) -> String {
     let compiled = || {
         let position = form.code_order.iter().position(|operand| *operand == index)?;
         match rss::code::Code::decode(code?).ok()? {
@@ -209,6 +218,20 @@ fn value(form: &Form, instruction: &Instruction, index: usize, code: Option<&[u8
     match compiled() {
         Some(rss::code::Operand::Float(bits)) => ladder::format_float(f32::from_bits(bits)),
         _ => constant.text().to_owned(),
+    }
+}
+
+/// The value in the data table that is written along, in the notation of the box: hexadecimal for
+/// the logical instructions. `None` where that notation is not known.
+fn address_value(image: &Image, definition: &Definition, address: &Address) -> Option<String> {
+    let hex = matches!(definition.mnemonic, "AND" | "OR" | "XOR" | "NOT");
+    match image.value_at(address).filter(|_| address.is_direct())? {
+        Value::Word(word) if hex => Some(format!("{word:04X}h")),
+        Value::Long(long) if hex => Some(format!("{long:08X}h")),
+        Value::Word(word) => Some(word.to_string()),
+        Value::Long(long) => Some(long.to_string()),
+        Value::Float(float) => Some(ladder::format_float(float)),
+        _ => None,
     }
 }
 
