@@ -19,9 +19,6 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
     let mut written = std::collections::HashSet::new();
     each_project(&arguments.files, &input, |opened, out| {
         let bytes = exported(opened, arguments)?;
-        if arguments.to == Form::Slc {
-            warn_of_losses(opened);
-        }
         let target = arguments.output.as_ref().map(|output| target(output, into_folder, opened, arguments));
         match target {
             None => out.write_all(&bytes)?,
@@ -44,7 +41,11 @@ fn exported(opened: &Opened, arguments: &ExportArguments) -> Result<Vec<u8>, Err
     match (arguments.to, arguments.table) {
         (Form::Json, _) => convert::json::write_json(&opened.project, &mut bytes)?,
         (Form::Slc, _) => {
-            return Err(Error::Use("SLC text is not written yet".to_owned()));
+            let export = convert::slc::project::export(opened.image());
+            for note in &export.notes {
+                eprintln!("{}: {}: {}: {}", opened.path.display(), note.severity.as_str(), note.place, note.message);
+            }
+            bytes = convert::slc::encode(&export.file.write());
         }
         (Form::Csv, Table::Symbols) => {
             convert::csv::write_symbols(opened.documentation(), &mut bytes)?;
@@ -74,21 +75,4 @@ fn target(output: &Path, into_folder: bool, opened: &Opened, arguments: &ExportA
     };
     let stem = opened.path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     output.join(format!("{stem}.{ending}"))
-}
-
-/// SLC text has no place for message set-ups and the like: say which rungs lose something.
-fn warn_of_losses(opened: &Opened) {
-    for file in opened.image().ladder_files() {
-        for (number, rung) in file.rungs.iter().enumerate() {
-            for loss in convert::slc::rung::not_in_text(rung) {
-                eprintln!("{}: file {} rung {number}: not in the text: {loss}", opened.path.display(), file.number);
-            }
-        }
-    }
-    if !opened.documentation().entries().is_empty() {
-        eprintln!(
-            "{}: SLC text holds no symbols and descriptions: `rungs export --to csv --table symbols` writes them",
-            opened.path.display()
-        );
-    }
 }
