@@ -34,6 +34,7 @@ pub mod compare;
 pub mod control;
 pub mod conversion;
 pub mod counter;
+pub mod coverage;
 pub mod diagnostic;
 pub mod expression;
 pub mod file;

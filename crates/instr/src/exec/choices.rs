@@ -139,7 +139,8 @@ pub const LIST: &[Row] = &[
         "trap-follows-overflow",
         "S:5/0 stays set until the program or a person clears it",
         "on MicroLogix 1100 to 1500 each math result rewrites it",
-        "the manuals ask for an OTU before END, which only helps a latched bit",
+        "manuals ask for an OTU before END, and the MicroLogix 1400 one says the bit remains in its last state; \
+         other pages of it say it is reset otherwise",
     ),
     row(
         Choice::FloatTiesAway,

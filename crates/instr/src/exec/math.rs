@@ -197,11 +197,22 @@ pub fn neg(source: Number, to: Width, mode: MathMode) -> Outcome {
     }
 }
 
-/// ABS: the source without its sign. Only the most negative integer overflows (manual, unseen).
+/// ABS: the source without its sign. Only the most negative integer overflows: limited, or cut with
+/// S:2/14 (printed for the MicroLogix 1100).
+///
+/// C tells a negative integer source on MicroLogix 1100 to 1500 (printed for the 1100) and is reset on
+/// SLC (manual, unseen). Of a float moved to a float only the sign bit changes, whatever the other bits
+/// are (printed for the 1100).
 #[inline]
 pub fn abs(source: Number, to: Width, mode: MathMode) -> Outcome {
+    if let (Number::Float(source), Width::Float) = (source, to) {
+        return Outcome::stored(Number::Float(source.abs()), false, !source.is_finite());
+    }
     match integers([source], to, mode) {
-        Some([source]) => integer(source.abs(), false, to, mode),
+        Some([source]) => {
+            let carry = to != Width::Float && source < 0 && !mode.rules.lineage.is_slc_like();
+            integer(source.abs(), carry, to, mode)
+        }
         None => float(source.float().abs(), to, mode),
     }
 }

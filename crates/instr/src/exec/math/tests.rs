@@ -53,9 +53,20 @@ fn sub_limits_and_borrows_unsigned() {
 
 #[test]
 fn a_long_sum_out_of_words() {
-    // 0003 1940h + 55A8h = 0003 6EE8h, by the method printed for S:2/14 = 1.
-    let (low, flags) = result(words(add, 0x55A8, 0x1940, true));
-    assert_eq!((low as u16, flags.has(Flags::CARRY)), (0x6EE8, false));
+    // By the rungs printed for S:2/14 = 1: low words, carry into the high word, sign of the addend.
+    let long_add = |addend: i16, high: i16, low: i16| {
+        let (low, flags) = result(words(add, addend, low, true));
+        let carried = if flags.has(Flags::CARRY) { result(words(add, 1, high, true)).0 } else { high };
+        let high = if addend < 0 { result(words(sub, carried, 1, true)).0 } else { carried };
+        (high as u16, low as u16)
+    };
+    assert_eq!(long_add(0x55A8, 0x0003, 0x1940), (0x0003, 0x6EE8), "203072 + 21928 = 225000, printed");
+    for (addend, start) in [(-1, 65536), (1, 65535), (-32768, 0), (32767, -1), (-5, 3)] {
+        let register = Register::of_long(start);
+        let sum = long_add(addend, register.high as i16, register.low as i16);
+        let expected = Register::of_long(start + i32::from(addend));
+        assert_eq!(sum, (expected.high, expected.low), "{start} + {addend}");
+    }
 }
 
 #[test]
@@ -131,6 +142,10 @@ fn sign_changes() {
     assert_eq!(one(abs, -5, false), (5, Flags::NONE));
     assert_eq!(one(abs, -32768, false), (32767, Flags::OVERFLOW));
     assert_eq!(one(abs, -32768, true), (-32768, Flags::OVERFLOW | Flags::SIGN));
+    let mx = abs(w(-5), Width::Word, mode(Lineage::Mx, false));
+    assert_eq!(result(mx), (5, Flags::CARRY), "the MicroLogix 1100 tells a negative source");
+    let bits = abs(Number::Float(f32::from_bits(0xFFC1_2345)), Width::Float, mode(Lineage::Mx, false));
+    assert!(matches!(bits.value, Some(Number::Float(value)) if value.to_bits() == 0x7FC1_2345));
     assert_eq!(clr(Width::Word), Outcome { value: Some(w(0)), flags: Flags::ZERO, register: None });
 }
 
