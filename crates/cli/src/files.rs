@@ -5,20 +5,19 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Endings of project files.
-pub const PROJECTS: &[&str] = &["rss"];
-/// Endings of project files and of SLC text, which holds a program too.
-pub const PROGRAMS: &[&str] = &["rss", "slc"];
+/// Ending of projects picked up from folders. SLC text mostly lies beside the project it belongs to,
+/// which must not be listed twice: name it to read it.
+pub const PROJECTS: &str = "rss";
 
-/// Endings of scenarios.
-pub const SCENARIOS: &[&str] = &["toml"];
+/// Ending of scenarios.
+pub const SCENARIOS: &str = "toml";
 
-/// Files in the order given, folders replaced by the files below them that have one of the endings, in
-/// order of name. A file named on the command line is taken whatever its ending: its content decides.
+/// Files in the order given, folders replaced by the files with this ending below them in order of
+/// name. A file named on the command line is taken whatever its ending: its content decides.
 ///
 /// # Errors
-/// A folder that cannot be listed, or one that holds no project.
-pub fn expand(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, String> {
+/// A folder that cannot be listed, or one that holds no such file.
+pub fn expand(paths: &[PathBuf], ending: &str) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     for path in paths {
         if !path.is_dir() {
@@ -26,9 +25,9 @@ pub fn expand(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Strin
             continue;
         }
         let before = files.len();
-        collect(path, endings, &mut files, 0)?;
+        collect(path, ending, &mut files, 0)?;
         if files.len() == before {
-            return Err(format!("{}: no file with the ending {} in this folder", path.display(), endings.join(" or ")));
+            return Err(format!("{}: no .{} file in this folder", path.display(), ending.to_uppercase()));
         }
     }
     Ok(files)
@@ -37,7 +36,7 @@ pub fn expand(paths: &[PathBuf], endings: &[&str]) -> Result<Vec<PathBuf>, Strin
 /// Links to folders are not followed, so the walk ends; the bound is for absurd nesting.
 const MAX_DEPTH: usize = 64;
 
-fn collect(folder: &Path, endings: &[&str], files: &mut Vec<PathBuf>, depth: usize) -> Result<(), String> {
+fn collect(folder: &Path, ending: &str, files: &mut Vec<PathBuf>, depth: usize) -> Result<(), String> {
     let list = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut entries: Vec<_> = list.filter_map(Result::ok).collect();
     entries.sort_by_key(std::fs::DirEntry::file_name);
@@ -45,17 +44,16 @@ fn collect(folder: &Path, endings: &[&str], files: &mut Vec<PathBuf>, depth: usi
         let path = entry.path();
         let Ok(kind) = entry.file_type() else { continue };
         if kind.is_dir() && depth < MAX_DEPTH {
-            collect(&path, endings, files, depth + 1)?;
-        } else if path.is_file() && has_ending(&path, endings) {
+            collect(&path, ending, files, depth + 1)?;
+        } else if path.is_file() && has_ending(&path, ending) {
             files.push(path);
         }
     }
     Ok(())
 }
 
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("");
-    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
+fn has_ending(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
 }
 
 /// Splits `FILE [ADDRESS ..]`: the first word is a file, later ones are if such a path exists.

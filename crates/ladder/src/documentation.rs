@@ -149,12 +149,12 @@ impl Documentation {
         self.instruction_comments.push(comment);
     }
 
-    /// All entries in stored order.
+    /// All entries in the order they were added.
     pub fn entries(&self) -> &[AddressEntry] {
         &self.entries
     }
 
-    /// All instruction comments in stored order.
+    /// All instruction comments in the order they were added.
     pub fn instruction_comments(&self) -> &[InstructionComment] {
         &self.instruction_comments
     }

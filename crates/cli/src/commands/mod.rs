@@ -102,7 +102,7 @@ fn each_project(
     input: &Input,
     mut work: impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
-    let files = files::expand(paths, files::PROGRAMS).map_err(Error::Use)?;
+    let files = files::expand(paths, files::PROJECTS).map_err(Error::Use)?;
     let stdout = std::io::stdout();
     let bar = files::progress(files.len(), stdout.is_terminal());
     let mut out = std::io::BufWriter::new(stdout.lock());

@@ -117,17 +117,18 @@ fn counts(report: &TimerReport) -> serde_json::Map<String, Value> {
     ["TON", "TOF", "RTO", "CTU", "CTD", "HSC"].into_iter().map(|name| (name.to_owned(), count(name).into())).collect()
 }
 
-fn rungs(list: &[Reference]) -> String {
-    let mut places: Vec<String> = list
+fn places(list: &[Reference], with_members: bool) -> String {
+    let mut texts: Vec<String> = list
         .iter()
         .map(|r| {
-            let members = if r.members.is_empty() { String::new() } else { format!(" {}", r.members.join(",")) };
+            let members =
+                if !with_members || r.members.is_empty() { String::new() } else { format!(" {}", r.members.join(",")) };
             let may = if r.certainty == Certainty::May { "?" } else { "" };
             format!("{}{members}{may}", r.location)
         })
         .collect();
-    places.dedup();
-    places.join(", ")
+    texts.dedup();
+    texts.join(", ")
 }
 
 fn print(
@@ -236,9 +237,10 @@ fn table(elements: &[&&TimerCounter], title: &str, out: &mut dyn Write) -> Resul
             state.unwrap_or_else(|| "no element".to_owned()),
             symbol,
             timed.join(", "),
-            rungs(&element.read_by),
-            rungs(&element.reset_by),
-            rungs(&element.written_by),
+            places(&element.read_by, true),
+            // RES clears the whole element: naming its members says nothing.
+            places(&element.reset_by, false),
+            places(&element.written_by, true),
         ]);
     }
     table.write(out, "  ")?;

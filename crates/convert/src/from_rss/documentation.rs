@@ -68,11 +68,18 @@ fn lines(texts: &[Text<'_>]) -> Vec<String> {
     texts.iter().take(used).map(|text| text.decode().into_owned()).collect()
 }
 
+/// Records in the order they were made; the stored order is that of a hash map and says nothing.
+fn by_id<'d, 'a>(records: &'d [Entry<'a>]) -> Vec<&'d Entry<'a>> {
+    let mut records: Vec<_> = records.iter().collect();
+    records.sort_by_key(|record| record.id);
+    records
+}
+
 /// Entries and instruction comments; rung comments are taken out of [`Comments`] by the rungs.
 pub(crate) fn documentation(database: &Database<'_>) -> Documentation {
     let mut documentation = Documentation::default();
     let mut targets: HashMap<u32, Target> = HashMap::with_capacity(database.addresses.len());
-    for entry in &database.addresses {
+    for entry in by_id(&database.addresses) {
         let target = target(&entry.key.decode());
         targets.insert(entry.id, target.clone());
         documentation.add(AddressEntry {
@@ -86,7 +93,7 @@ pub(crate) fn documentation(database: &Database<'_>) -> Documentation {
         target: targets.get(&entry.address_id).cloned(),
         lines: lines(&entry.lines),
     };
-    for entry in &database.instruction_comments {
+    for entry in by_id(&database.instruction_comments) {
         documentation.add_instruction_comment(comment(entry));
     }
     documentation

@@ -1,0 +1,150 @@
+//! The commands as a user runs them, on the example projects: exit codes, text and JSON.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
+}
+
+/// Runs `rungs` in the folder of the examples.
+fn rungs(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rungs"))
+        .current_dir(examples())
+        .args(arguments)
+        .env_remove("NO_COLOR")
+        .output()
+        .expect("the command starts")
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = rungs(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The documents of `--json`, one per line.
+fn json(arguments: &[&str]) -> Vec<Value> {
+    text(arguments).lines().map(|line| serde_json::from_str(line).expect("a JSON document a line")).collect()
+}
+
+/// An empty folder of its own for each test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn show_reads_like_a_printout() {
+    insta::assert_snapshot!("show_motor", text(&["show", "motor/motor.RSS"]));
+    insta::assert_snapshot!(
+        "show_range",
+        text(&["show", "batch/batch.RSS", "--file", "4", "--rung", "2..3", "--width", "80", "--ascii"])
+    );
+}
+
+#[test]
+fn info_says_what_a_project_is() {
+    insta::assert_snapshot!("info_batch", text(&["info", "batch/batch.RSS"]));
+    let info = &json(&["info", "--json", "batch/batch.RSS"])[0];
+    assert_eq!(info["processor"]["name"], "MicroLogix 1100 Series B");
+    assert_eq!(info["program_files"].as_array().map(Vec::len), Some(5));
+    assert_eq!(info["diagnostics"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn timers_and_counters_with_their_rungs() {
+    insta::assert_snapshot!("timers_motor", text(&["timers", "motor/motor.RSS"]));
+    insta::assert_snapshot!("timers_batch", text(&["timers", "batch/batch.RSS"]));
+    let report = &json(&["timers", "--json", "motor/motor.RSS", "FAN_RUN_ON"])[0];
+    let timer = &report["timers"][0];
+    assert_eq!((&timer["address"], &timer["preset_seconds"]), (&Value::from("T4:2"), &Value::from("30")));
+    assert_eq!(timer["read_by"][0]["rung"], 5);
+}
+
+#[test]
+fn cross_reference_of_an_address_and_of_a_symbol() {
+    insta::assert_snapshot!("xref_box_size", text(&["xref", "batch/batch.RSS", "BOX_SIZE", "C5:0", "U:3"]));
+    let report = &json(&["xref", "--json", "motor/motor.RSS", "O:0/0"])[0];
+    let roles: Vec<&str> = report["addresses"][0]["accesses"]
+        .as_array()
+        .expect("list")
+        .iter()
+        .filter_map(|a| a["role"].as_str())
+        .collect();
+    assert_eq!(roles, ["write", "read"]);
+    assert_eq!(rungs(&["xref", "motor/motor.RSS", "NO_SUCH_SYMBOL"]).status.code(), Some(1));
+}
+
+#[test]
+fn data_tables_in_any_radix() {
+    insta::assert_snapshot!("data_motor", text(&["data", "motor/motor.RSS", "T4", "N7", "B3:0/0"]));
+    assert!(text(&["data", "motor/motor.RSS", "N7:1", "--radix", "hex"]).contains("N7:1  1F4"));
+    assert_eq!(rungs(&["data", "motor/motor.RSS", "N7:99"]).status.code(), Some(1));
+}
+
+#[test]
+fn verify_accounts_for_every_byte_and_goes_on_after_a_bad_file() {
+    let bad = folder("verify").join("bad.RSS");
+    std::fs::write(&bad, b"%PDF-1.4 not a project").expect("written");
+    let output = rungs(&["verify", "--json", "motor/motor.RSS", &bad.display().to_string(), "batch/batch.RSS"]);
+    assert_eq!(output.status.code(), Some(3));
+    let lines: Vec<Value> =
+        String::from_utf8_lossy(&output.stdout).lines().map(|l| serde_json::from_str(l).expect("JSON")).collect();
+    assert_eq!(lines.len(), 3);
+    assert_eq!(lines[1]["error"], "this is a PDF document");
+    for line in [&lines[0], &lines[2]] {
+        assert_eq!(line["roundtrip"], true);
+        assert_eq!(line["code_differs"], Value::Array(Vec::new()));
+        for stream in line["streams"].as_array().expect("streams") {
+            assert_eq!(stream["identical"], true, "{stream}");
+            assert_eq!(stream["bytes"], stream["understood"], "{stream}");
+        }
+    }
+    assert_eq!(lines[0]["code_agrees"], 22);
+}
+
+#[test]
+fn a_project_survives_text_and_json() {
+    let folder = folder("round");
+    let path = |name: &str| folder.join(name).display().to_string();
+    for example in ["motor", "traffic_light", "batch"] {
+        let project = format!("{example}/{example}.RSS");
+        text(&["export", &project, "--to", "slc", "-o", &path("a.SLC"), "--force"]);
+        text(&["export", &project, "--to", "csv", "-o", &path("a.csv"), "--force"]);
+        text(&["build", &path("a.SLC"), "-o", &path("a.RSS"), "--force"]);
+        text(&["export", &project, "--to", "json", "-o", &path("b.json"), "--force"]);
+        text(&["build", &path("b.json"), "-o", &path("b.RSS"), "--force"]);
+        let original = std::fs::read(examples().join(&project)).expect("example");
+        assert!(std::fs::read(path("a.RSS")).expect("built") == original, "{example} from text");
+        assert!(std::fs::read(path("b.RSS")).expect("built") == original, "{example} from JSON");
+    }
+}
+
+#[test]
+fn folders_and_outputs() {
+    let out = folder("many").display().to_string();
+    text(&["export", ".", "--to", "csv", "--table", "timers", "-o", &out, "--image", "main"]);
+    // The texts beside the projects are not taken for projects; nothing is overwritten unasked.
+    let again = rungs(&["export", "motor", "--to", "csv", "--table", "timers", "-o", &out]);
+    assert_eq!(again.status.code(), Some(2), "{}", String::from_utf8_lossy(&again.stderr));
+    assert_eq!(json(&["info", "--json", "motor", "batch/batch.RSS"]).len(), 2);
+}
+
+#[test]
+fn bad_use_ends_with_2() {
+    for arguments in [
+        &["show"][..],
+        &["show", "motor/motor.RSS", "--rung", "7..4"],
+        &["export", "motor/motor.RSS"],
+        &["build", "motor/motor.SLC", "-o", "motor/motor.RSS"],
+        &["frobnicate"],
+    ] {
+        assert_eq!(rungs(arguments).status.code(), Some(2), "{arguments:?}");
+    }
+    assert_eq!(rungs(&["info", "no/such/file.RSS"]).status.code(), Some(3));
+}
