@@ -8,7 +8,8 @@ pub struct IoConfiguration {
     /// Slots in use, ascending; slot 0 is the controller itself on fixed and MicroLogix units, and
     /// the processor in a chassis.
     pub slots: Vec<Slot>,
-    /// The kind of base unit in words (`BWA: ..`), with how sure it is; empty if not stated.
+    /// The kind of base unit by the letters of its catalogue number (`BWA`), which are inferred from
+    /// stored digits and never printed; empty if not stated.
     pub base_unit: String,
     /// Why nothing or not everything is known, when that is so: shown beside the slots.
     pub unknown: Option<String>,

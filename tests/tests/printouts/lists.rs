@@ -38,9 +38,7 @@ pub(crate) fn io(pair: &Pair<'_>) -> Outcome {
     let mut outcome = Outcome::default();
     for row in pair.report.printout.io.iter().flatten() {
         let slot = pair.image.io.slots.iter().find(|s| s.number == row.slot);
-        // The model adds the kind of base unit to the controller's name, which RSLogix does not print.
-        let name = |text: &str| text.split(", base unit").next().unwrap_or_default().to_owned();
-        let read = slot.map(|s| (s.module.catalog.clone().unwrap_or_default(), name(&s.module.description)));
+        let read = slot.map(|s| (s.module.catalog.clone().unwrap_or_default(), s.module.description.clone()));
         let printed = (row.catalog.clone(), row.description.clone());
         outcome.row(format!("slot {}", row.slot), printed, read.unwrap_or_default());
     }
