@@ -22,7 +22,7 @@ pub enum Number {
 }
 
 impl Constant {
-    /// Reads decimal, hex (`00FFh`, `0xFF`, `0X00FF`, `FFh` with a leading digit) and floats.
+    /// Reads decimal, hex (`00FFh`, `0xFF`, `0X00FF`, `FF00h`) and floats.
     /// `None` if the text is no number or does not fit 32 bits.
     pub fn parse(text: &str) -> Option<Constant> {
         let number = parse_number(text)?;
@@ -77,7 +77,9 @@ fn parse_number(text: &str) -> Option<Number> {
     let hex = digits
         .strip_prefix("0x")
         .or_else(|| digits.strip_prefix("0X"))
-        .or_else(|| digits.strip_suffix(['h', 'H']).filter(|d| d.starts_with(|c: char| c.is_ascii_digit())));
+        .or_else(|| digits.strip_suffix(['h', 'H']).filter(|d| d.starts_with(|c: char| c.is_ascii_digit())))
+        // `FF00h` without the leading zero that RSLogix writes: symbols have no lower-case letters.
+        .or_else(|| digits.strip_suffix('h').filter(|d| d.bytes().all(|b| matches!(b, b'0'..=b'9' | b'A'..=b'F'))));
     if let Some(hex) = hex {
         let plain = digits.len() == text.len() && !hex.is_empty() && hex.bytes().all(|b| b.is_ascii_hexdigit());
         let value = plain.then(|| u32::from_str_radix(hex, 16).ok()).flatten()?;
@@ -133,16 +135,24 @@ mod tests {
 
     #[test]
     fn spellings() {
-        for (text, value) in
-            [("-255", -255), ("0FF00h", 0xFF00), ("00FFh", 255), ("0xFF", 255), ("0X00FF", 255), ("999999", 999_999)]
-        {
+        for (text, value) in [
+            ("-255", -255),
+            ("0FF00h", 0xFF00),
+            ("00FFh", 255),
+            ("0xFF", 255),
+            ("FF00h", 0xFF00),
+            ("0X00FF", 255),
+            ("999999", 999_999),
+        ] {
             assert_eq!(Constant::parse(text).and_then(|c| c.as_integer()), Some(value), "{text}");
         }
         for (text, value) in [("0.5", 0.5_f32), ("1000.0", 1000.0), ("-1.192093E-007", -1.192_093E-7), ("1e3", 1000.0)]
         {
             assert_eq!(Constant::parse(text).map(|c| c.number()), Some(Number::Float(value)), "{text}");
         }
-        for text in ["", "-", "h", "FFh", "DEAh", "12x", "N7", "1.2.3", "99999999999", "1 ", "inf", "nan", "-0x5"] {
+        for text in
+            ["", "-", "h", "FFH", "DEAH", "fFh", "12x", "N7", "1.2.3", "99999999999", "1 ", "inf", "nan", "-0x5"]
+        {
             assert_eq!(Constant::parse(text), None, "{text}");
         }
     }

@@ -112,6 +112,10 @@ impl Function {
     }
 
     fn from_symbol(text: &str) -> Option<Function> {
+        // Lists of CPT's operators name the sign by its instruction.
+        if text.eq_ignore_ascii_case("NEG") {
+            return Some(Function::Negate);
+        }
         FUNCTIONS.iter().find(|row| row.1.eq_ignore_ascii_case(text)).map(|row| row.0)
     }
 }
@@ -310,6 +314,7 @@ mod tests {
         let tokens = ["N7:0", "+", "1", "OTE", "B3:0/0"];
         let (_, used) = Expression::parse_prefix(&tokens).expect("a sum");
         assert_eq!(used, 3);
+        assert_eq!(Expression::parse("NEG N7:0"), Expression::parse("- N7:0"));
         assert!(Expression::parse("N7:0 +").is_err());
         assert!(Expression::parse(&"( ".repeat(100_000)).is_err());
         assert!(Expression::parse(&"- ".repeat(100_000)).is_err());
