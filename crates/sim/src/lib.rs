@@ -43,6 +43,7 @@ mod snapshot;
 mod state;
 pub mod status;
 mod trace;
+pub mod walker;
 
 pub use access::{AccessError, Kind};
 pub use choices::Choices;
