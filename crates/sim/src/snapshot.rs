@@ -84,6 +84,7 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
     }
     let timed = state.timed;
     out.extend_from_slice(&[timed.enabled.into(), timed.fine.into(), timed.executing.into(), timed.pending]);
+    out.push(state.due.into());
     out.extend_from_slice(&state.events);
     out.push(MODES.iter().position(|mode| *mode == state.mode).unwrap_or(0) as u8);
     let fault = state.fault.map_or([0; 4], |fault| [1, fault.code, fault.file, fault.rung]);
@@ -144,6 +145,7 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
         executing: reader.flag()?,
         pending: reader.take::<1>()?[0],
     };
+    state.due = reader.flag()?;
     state.events = reader.take::<8>()?;
     let mode = reader.take::<1>()?[0];
     state.mode = *MODES.get(usize::from(mode)).ok_or(RestoreError::NotAState)?;

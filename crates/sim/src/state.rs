@@ -75,6 +75,8 @@ pub(crate) struct State {
     /// Time since the last scan began.
     pub(crate) since_scan: u64,
     pub(crate) timed: TimedInterrupt,
+    /// A waiting interrupt was enabled: it runs at the next rung.
+    pub(crate) due: bool,
     /// Inputs as the event interrupts saw them last: two waiting counts per source.
     pub(crate) events: [u8; 8],
     /// Indirect addresses that left their file, so far.
@@ -107,6 +109,7 @@ impl State {
             second_part: 0,
             since_scan: 0,
             timed: TimedInterrupt::default(),
+            due: false,
             events: [0; 8],
             strays: 0,
             scratch: Vec::with_capacity(if program.needs_scratch() { 3 * program.data.len() } else { 0 }),

@@ -17,10 +17,21 @@ pub(super) struct Tables {
     pub(super) approximations: Vec<Approximation>,
 }
 
-/// Words per element of function files a processor has although no project says so.
-const FUNCTION_WORDS: u16 = 64;
-/// Elements of such a file.
-const FUNCTION_ELEMENTS: u16 = 8;
+/// Elements and words per element of function files, as projects of processors that have them store
+/// them; the most elements of any processor.
+const FUNCTION_FILES: &[(FileType, u16, u16)] = &[
+    (FileType::HSC, 6, 18),
+    (FileType::PTO, 2, 12),
+    (FileType::PTOX, 3, 15),
+    (FileType::PWM, 2, 8),
+    (FileType::PWMX, 3, 10),
+    (FileType::STI, 1, 4),
+    (FileType::EII, 8, 4),
+    (FileType::RTC, 1, 8),
+    (FileType::TPI, 1, 3),
+];
+/// Size of the others, larger than any seen.
+const OTHER_FUNCTION_FILE: (u16, u16) = (8, 128);
 
 pub(super) fn tables(image: &Image, options: &Options, family: Family) -> Tables {
     let mut needs = Needs::default();
@@ -59,10 +70,28 @@ pub(super) fn tables(image: &Image, options: &Options, family: Family) -> Tables
     Tables { files, wanted: needs.io.into_iter().collect(), approximations }
 }
 
+/// A function file as in a new project: interrupts enabled but not set up, limits as wide as they go.
 fn function_file(file_type: FileType) -> DataFile {
-    let mut file = DataFile::new(file_type, file_type.implied_file().unwrap_or(0), FUNCTION_ELEMENTS);
-    file.words_per_element = FUNCTION_WORDS;
-    file.words = vec![0; usize::from(FUNCTION_ELEMENTS) * usize::from(FUNCTION_WORDS)];
+    let row = FUNCTION_FILES.iter().find(|row| row.0 == file_type);
+    let (elements, size) = row.map_or(OTHER_FUNCTION_FILE, |row| (row.1, row.2));
+    let mut file = DataFile::new(file_type, file_type.implied_file().unwrap_or(0), elements);
+    file.words_per_element = size;
+    file.words = vec![0; usize::from(elements) * usize::from(size)];
+    for (number, element) in file.words.chunks_exact_mut(usize::from(size)).enumerate() {
+        let set_up: &[(usize, u16)] = match file_type {
+            FileType::STI => &[(2, 2)],
+            FileType::EII => &[(2, 0x4002), (3, number as u16)],
+            FileType::HSC => {
+                &[(2, 2), (3, 0x000F), (7, 0xFFFF), (8, 0x7FFF), (10, 0x8000), (11, 0xFFFF), (12, 0x7FFF), (14, 0x8000)]
+            }
+            _ => &[],
+        };
+        for (index, value) in set_up {
+            if let Some(word) = element.get_mut(*index) {
+                *word = *value;
+            }
+        }
+    }
     file
 }
 
@@ -192,6 +221,12 @@ fn size_of_type(file_type: FileType) -> u32 {
 impl Compiler<'_> {
     /// Applies the parameters written in inline rungs; the first instruction on an element decides.
     pub(super) fn parameters(&self, data: &mut [u16]) {
+        if self.traits.status_file_sti()
+            && let Some(word) = data.get_mut(self.layout.status + status::STI_ENABLED.0)
+        {
+            // A new project has the timed interrupt enabled.
+            *word |= status::STI_ENABLED.1;
+        }
         let mut done: BTreeSet<u32> = BTreeSet::new();
         let image = self.image;
         for instruction in image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions()) {

@@ -2,7 +2,7 @@
 
 use ladder::FileType;
 
-use super::run::{Context, Ending, NoWatch};
+use super::run::{Context, Ending};
 use super::{Core, Exec, Watch};
 use crate::fault::code;
 use crate::machine::Mode;
@@ -296,6 +296,7 @@ impl Core<'_> {
     pub(crate) fn timed_enable(&mut self, on: bool) {
         self.set_status_bit(status::STI_ENABLED, on);
         self.s.timed.enabled = on;
+        self.s.due |= on && self.status_bit(status::STI_PENDING);
     }
 
     /// UID, UIE, UIF: bits name the sources, from bit 0: EII3, EII2, EII1, EII0 above STI.
@@ -323,7 +324,10 @@ impl Core<'_> {
             };
             match change {
                 MaskChange::Disable => self.put_bits(at + FLAGS, flag::ENABLE, false),
-                MaskChange::Enable => self.put_bits(at + FLAGS, flag::ENABLE, true),
+                MaskChange::Enable => {
+                    self.put_bits(at + FLAGS, flag::ENABLE, true);
+                    self.s.due = true;
+                }
                 MaskChange::Flush => {
                     if file_type != FileType::HSC {
                         *self.waiting(at) = 0;
@@ -340,9 +344,12 @@ impl Core<'_> {
         if context != Context::Main {
             return Err(code::IN_INTERRUPT);
         }
+        let minor = self.status(status::MINOR) & status::MINOR_FATAL != 0;
+        if minor && !self.p.traits.mx() {
+            return Err(code::MINOR_ERROR);
+        }
         self.write_outputs();
         self.read_inputs();
-        let _ = NoWatch;
         Ok(())
     }
 }

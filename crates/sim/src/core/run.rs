@@ -83,7 +83,17 @@ impl Core<'_> {
             let before = power;
             let mut failed = None;
             match *op {
-                Op::Rung => power = zone,
+                Op::Rung => {
+                    power = zone;
+                    if self.s.due && context == Context::Main {
+                        self.s.due = false;
+                        self.events(watch);
+                        if !self.executing() {
+                            self.count(counted_from, at);
+                            return Ending::Halt;
+                        }
+                    }
+                }
                 Op::BranchStart => {
                     saved = saved << 1 | u64::from(power);
                     joined <<= 1;

@@ -117,6 +117,8 @@ impl Core<'_> {
         match ending {
             Ending::End | Ending::TempEnd => {}
             Ending::Suspend => return self.stop(Mode::Suspend),
+            // An interrupt routine between rungs can have stopped the processor already.
+            Ending::Halt if !self.executing() => return,
             Ending::Halt => return self.stop(Mode::Fault),
         }
         self.write_outputs();
