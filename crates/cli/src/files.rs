@@ -16,9 +16,11 @@ pub const SCENARIOS: &str = "toml";
 /// name. A file named on the command line is taken whatever its ending: its content decides.
 ///
 /// # Errors
-/// A folder that cannot be listed, or one that holds no such file.
+/// A folder that cannot be listed, or no file at all. A folder without such a file among others is
+/// reported, and the rest goes on.
 pub fn expand(paths: &[PathBuf], ending: &str) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
+    let mut empty = Vec::new();
     for path in paths {
         if !path.is_dir() {
             files.push(path.clone());
@@ -27,9 +29,13 @@ pub fn expand(paths: &[PathBuf], ending: &str) -> Result<Vec<PathBuf>, String> {
         let before = files.len();
         collect(path, ending, &mut files, 0)?;
         if files.len() == before {
-            return Err(format!("{}: no .{} file in this folder", path.display(), ending.to_uppercase()));
+            empty.push(format!("{}: no .{} file in this folder", path.display(), ending.to_uppercase()));
         }
     }
+    if files.is_empty() {
+        return Err(empty.join("\n"));
+    }
+    empty.iter().for_each(|folder| eprintln!("{folder}"));
     Ok(files)
 }
 

@@ -148,3 +148,33 @@ fn bad_use_ends_with_2() {
     }
     assert_eq!(rungs(&["info", "no/such/file.RSS"]).status.code(), Some(3));
 }
+
+#[test]
+fn a_rung_beyond_the_file_is_a_finding() {
+    let output = rungs(&["show", "motor/motor.RSS", "--rung", "900"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("has rungs 0 to 8"));
+}
+
+#[test]
+fn an_empty_folder_does_not_stop_the_rest() {
+    let empty = folder("empty").display().to_string();
+    assert_eq!(json(&["info", "--json", &empty, "motor"]).len(), 1);
+    assert_eq!(rungs(&["info", &empty]).status.code(), Some(2));
+}
+
+#[test]
+fn a_project_read_in_part_is_not_written_to_a_file() {
+    let folder = folder("partial");
+    let mut bytes = std::fs::read(examples().join("motor/motor.RSS")).expect("example");
+    // The first compressed stream that is damaged enough not to inflate.
+    let damaged = folder.join("damaged.RSS");
+    let target = folder.join("out.json");
+    let (damaged_name, target_name) = (damaged.display().to_string(), target.display().to_string());
+    let start = bytes.windows(2).position(|pair| pair == [0x78, 0x9C]).expect("a zlib stream");
+    bytes[start + 2..start + 6].fill(0xFF);
+    std::fs::write(&damaged, bytes).expect("written");
+    let output = rungs(&["export", &damaged_name, "--to", "json", "-o", &target_name]);
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(!target.exists());
+}

@@ -18,6 +18,12 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
     let input = Input { strict: arguments.strict, image: arguments.image, json: false };
     let mut written = std::collections::HashSet::new();
     each_project(&arguments.files, &input, |opened, out| {
+        let incomplete = opened.project.diagnostics.iter().any(|d| d.severity == Severity::Error);
+        if incomplete && arguments.output.is_some() {
+            // A file outlives the message that says what it lacks.
+            eprintln!("{}: not written, because it could not be read whole", opened.path.display());
+            return Ok(Outcome::Unreadable);
+        }
         let bytes = exported(opened, arguments)?;
         let target = arguments.output.as_ref().map(|output| target(output, into_folder, opened, arguments));
         match target {
@@ -31,7 +37,6 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
                 writeln!(out, "{}", path.display())?;
             }
         }
-        let incomplete = opened.project.diagnostics.iter().any(|d| d.severity == Severity::Error);
         Ok(if incomplete { Outcome::Unreadable } else { Outcome::Done })
     })
 }

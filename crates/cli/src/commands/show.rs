@@ -33,6 +33,13 @@ pub fn run(arguments: &ShowArguments) -> Result<Outcome, Error> {
                 outcome = Outcome::Finding;
             }
         }
+        for file in chosen(opened, arguments) {
+            if arguments.rung.is_some_and(|range| range.first >= file.rungs.len()) {
+                let last = file.rungs.len().saturating_sub(1);
+                eprintln!("{}: program file {} has rungs 0 to {last}", opened.path.display(), file.number);
+                outcome = Outcome::Finding;
+            }
+        }
         if arguments.input.json {
             writeln!(out, "{}", describe(opened, arguments))?;
         } else {
@@ -53,7 +60,6 @@ fn draw(opened: &Opened, arguments: &ShowArguments, style: &render::Style, out: 
     for file in chosen(opened, arguments) {
         let range = arguments.rung.map(|range| range.first..=range.last);
         if range.as_ref().is_some_and(|range| *range.start() >= file.rungs.len()) {
-            writeln!(out, "program file {} has rungs 0 to {}", file.number, file.rungs.len().saturating_sub(1))?;
             continue;
         }
         render::program_file(&mut *out, opened.image(), file, range, opened.documentation(), style)?;
