@@ -17,6 +17,7 @@ mod reach;
 mod symbols;
 
 use std::cmp::Reverse;
+use std::collections::{HashMap, HashSet};
 
 use instr::{Kind, Role};
 use ladder::{Address, Documentation, Family, FileType, Image, Mnemonic, Operand, Value};
@@ -35,6 +36,8 @@ pub struct CrossReference<'a> {
     documentation: &'a Documentation,
     data: Collected<'a>,
     index: Index,
+    /// Stretches of uses whose address is decided at run time, by that address as it is written.
+    computed: HashMap<Address, Vec<Span>>,
 }
 
 /// An access to an address, seen from that address.
@@ -237,7 +240,17 @@ impl<'a> CrossReference<'a> {
         if index_can_leave_files(image, &data) {
             data.notes.push(Note::IndexLeavesFiles);
         }
-        CrossReference { image, documentation, data, index }
+        let mut computed: HashMap<Address, Vec<Span>> = HashMap::new();
+        for span in &data.spans {
+            let address = data.uses.get(span.by).map(|it| &it.address).filter(|address| is_computed(address));
+            if let Some(address) = address {
+                match computed.get_mut(&**address) {
+                    Some(spans) => spans.push(*span),
+                    None => drop(computed.insert(address.clone().into_owned(), vec![*span])),
+                }
+            }
+        }
+        CrossReference { image, documentation, data, index, computed }
     }
 
     /// Every access that touches some of what an address names. `#` before the address is not looked
@@ -255,22 +268,25 @@ impl<'a> CrossReference<'a> {
 
     /// Every address the program names with its accesses, files and addresses in ascending order;
     /// in each file the addresses that are decided at run time come last.
-    pub fn all(&self) -> Vec<Group<'_>> {
-        let mut groups: Vec<(GroupKey, Group<'_>)> = Vec::new();
+    ///
+    /// Each group is made when it is asked for: all of them together can be larger than the program
+    /// by the square, where many addresses lie under many copies of a whole file.
+    pub fn all(&self) -> impl Iterator<Item = Group<'_>> {
+        let mut addresses: Vec<(GroupKey, &Address, Option<Area>)> = Vec::new();
         for named in &self.data.named {
-            let key = group_key(&named.address, Some(named.area));
-            let accesses = self.accesses(named.area);
-            groups.push((key, Group { address: named.address.clone().into_owned(), accesses }));
+            addresses.push((group_key(&named.address, Some(named.area)), &named.address, Some(named.area)));
         }
-        let mut computed: Vec<&Address> = self.computed_addresses();
-        computed.sort_by_key(|address| address.to_string());
-        computed.dedup();
-        for address in computed {
-            let key = group_key(address, None);
-            groups.push((key, Group { address: address.clone(), accesses: self.written_as(address) }));
+        for address in self.computed_addresses() {
+            addresses.push((group_key(address, None), address, None));
         }
-        groups.sort_by(|a, b| a.0.cmp(&b.0));
-        groups.into_iter().map(|(_, group)| group).collect()
+        addresses.sort_by(|a, b| a.0.cmp(&b.0));
+        addresses.into_iter().map(|(_, address, area)| Group {
+            address: address.clone(),
+            accesses: match area {
+                Some(area) => self.accesses(area),
+                None => self.written_as(address),
+            },
+        })
     }
 
     /// Addresses that operands name, ascending, without those that are decided at run time.
@@ -306,15 +322,15 @@ impl<'a> CrossReference<'a> {
         self.data.symbols.address(operand)
     }
 
-    fn computed_addresses(&self) -> Vec<&Address> {
-        self.data.computed.iter().filter_map(|by| self.data.uses.get(*by)).map(|it| &*it.address).collect()
+    /// Each address that is decided at run time, once, in program order.
+    fn computed_addresses(&self) -> impl Iterator<Item = &Address> {
+        let mut seen = HashSet::new();
+        let all = self.data.computed.iter().filter_map(|by| self.data.uses.get(*by)).map(|it| &*it.address);
+        all.filter(move |address| seen.insert(*address))
     }
 
     fn written_as(&self, address: &Address) -> Vec<Access<'_>> {
-        let same = |it: &Use<'_>| *it.address == *address;
-        let mut spans: Vec<Span> =
-            self.data.spans.iter().filter(|span| self.data.uses.get(span.by).is_some_and(same)).copied().collect();
-        self.to_accesses(&mut spans)
+        self.to_accesses(&mut self.computed.get(address).cloned().unwrap_or_default())
     }
 
     fn accesses(&self, area: Area) -> Vec<Access<'_>> {
@@ -385,6 +401,11 @@ impl<'a> CrossReference<'a> {
         all.sort_by_key(|access| (access.certainty, access.location));
         all
     }
+}
+
+/// Brackets or `#` leave to run time what the address means.
+fn is_computed(address: &Address) -> bool {
+    address.indexed || address.indirections().next().is_some()
 }
 
 pub(crate) fn certainty(definite: bool) -> Certainty {

@@ -188,6 +188,6 @@ fn every_access_is_a_row() {
             ("note", "symbol without an address"),
         ],
     );
-    let accesses: usize = xref.all().iter().map(|group| group.accesses.len()).sum();
+    let accesses: usize = xref.all().map(|group| group.accesses.len()).sum();
     assert_eq!(rows.len(), accesses + xref.unresolved().len() + xref.notes().len());
 }

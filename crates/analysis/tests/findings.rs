@@ -123,7 +123,7 @@ fn groups_come_in_the_order_of_files_and_addresses() {
         "XIC I:2.0/1; XIC I:0.1/1; OTE O:0.0/3; XIC B3:0/1; MOV 0 B3:0",
     ]);
     let xref = CrossReference::build(&image, &image.documentation);
-    let order: Vec<String> = xref.all().iter().map(|group| group.address.to_string()).collect();
+    let order: Vec<String> = xref.all().map(|group| group.address.to_string()).collect();
     assert_eq!(
         order,
         [

@@ -297,3 +297,15 @@ fn an_unknown_instruction_may_do_anything_with_its_addresses() {
     let kinds: Vec<_> = xref.unresolved().iter().map(|u| u.kind.as_str()).collect();
     assert_eq!(kinds, ["unknown instruction", "unknown number of operands"]);
 }
+
+#[test]
+fn the_cost_of_addresses_decided_at_run_time_is_that_of_their_accesses() {
+    let rung = |n: usize| format!("OTE N{}:[B3:{}]/{}", 20 + n % 100, n / 100 % 25, n / 2_500);
+    let rungs: Vec<String> = (0..20_000).map(rung).collect();
+    let image = image(&rungs.iter().map(String::as_str).collect::<Vec<_>>());
+    let xref = CrossReference::build(&image, &image.documentation);
+    // Takes minutes if each address looks through all accesses.
+    let computed = xref.all().filter(|group| group.address.indirections().next().is_some());
+    let accesses: Vec<usize> = computed.map(|group| group.accesses.len()).collect();
+    assert_eq!(accesses, vec![1; 20_000]);
+}

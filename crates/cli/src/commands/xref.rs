@@ -9,30 +9,23 @@ use serde_json::{Value, json};
 use super::{Opened, each_project, one_line};
 use crate::args::XrefArguments;
 use crate::files;
-use crate::output::{Columns, Error, Outcome};
+use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &XrefArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
     each_project(&paths, &arguments.input, |opened, out| {
         let xref = CrossReference::build(opened.image(), opened.documentation());
         let calls = CallGraph::build(opened.image(), opened.documentation());
-        let mut report = Report {
-            opened,
-            xref: &xref,
-            calls: &calls,
-            groups: Vec::new(),
-            calls_asked: Vec::new(),
-            unknown: Vec::new(),
-        };
-        if wanted.is_empty() {
-            report.groups = xref.all();
-        } else {
+        let mut report =
+            Report { opened, xref: &xref, calls: &calls, groups: None, calls_asked: Vec::new(), unknown: Vec::new() };
+        if !wanted.is_empty() {
+            report.groups = Some(Vec::new());
             wanted.iter().for_each(|text| report.find(text));
         }
         if arguments.input.json {
-            writeln!(out, "{}", report.describe(arguments.findings, wanted.is_empty()))?;
+            report.describe(arguments.findings, out)?;
         } else {
-            report.print(arguments.findings, wanted.is_empty(), out)?;
+            report.print(arguments.findings, &mut Printable(out))?;
         }
         for text in &report.unknown {
             eprintln!("{}: `{text}` is no address, symbol or data file of this program", opened.path.display());
@@ -45,7 +38,9 @@ struct Report<'r> {
     opened: &'r Opened,
     xref: &'r CrossReference<'r>,
     calls: &'r CallGraph,
-    groups: Vec<Group<'r>>,
+    /// What was asked for; `None`: everything. That is made and printed one address after the other,
+    /// because all of it together can be far larger than the program.
+    groups: Option<Vec<Group<'r>>>,
     calls_asked: Vec<String>,
     unknown: Vec<String>,
 }
@@ -53,8 +48,8 @@ struct Report<'r> {
 impl Report<'_> {
     fn find(&mut self, text: &str) {
         match self.xref.find(text) {
-            Some(Found::Address(group)) => self.groups.push(group),
-            Some(Found::File { groups, .. }) => self.groups.extend(groups),
+            Some(Found::Address(group)) => self.groups.get_or_insert_default().push(group),
+            Some(Found::File { groups, .. }) => self.groups.get_or_insert_default().extend(groups),
             Some(Found::ProgramFile(number)) => {
                 let callers = self.calls.file(number).map(|file| {
                     let rungs: Vec<String> = file.called_by.iter().map(ToString::to_string).collect();
@@ -82,7 +77,15 @@ impl Report<'_> {
         (shown.symbol, one_line(&shown.description))
     }
 
-    fn describe(&self, only_findings: bool, whole: bool) -> Value {
+    /// Calls `each` with the groups that were asked for, in their order.
+    fn each_group<E>(&self, mut each: impl FnMut(&Group<'_>) -> Result<(), E>) -> Result<(), E> {
+        match &self.groups {
+            Some(groups) => groups.iter().try_for_each(each),
+            None => self.xref.all().try_for_each(|group| each(&group)),
+        }
+    }
+
+    fn describe(&self, only_findings: bool, out: &mut dyn Write) -> Result<(), Error> {
         let access = |access: &Access<'_>| {
             json!({
                 "file": access.location.file, "rung": access.location.rung, "mnemonic": access.mnemonic.to_string(),
@@ -91,64 +94,54 @@ impl Report<'_> {
                 "through": access.through.as_str(), "touches": access.touched,
             })
         };
-        let group = |group: &Group<'_>| {
-            let (symbol, description) = self.documentation(&group.address);
-            json!({
-                "address": group.address.to_string(), "symbol": symbol, "description": description,
-                "module": self.module(&group.address),
-                "accesses": group.accesses.iter().map(access).collect::<Value>(),
-            })
-        };
-        let mut value = json!({"file": self.opened.path.display().to_string()});
+        write!(out, "{{\"file\":{}", json!(self.opened.path.display().to_string()))?;
         if !only_findings {
-            value["addresses"] = self.groups.iter().map(group).collect();
-            value["calls"] = self
-                .calls
-                .calls
-                .iter()
-                .map(|call| {
-                    json!({
-                        "file": call.location.file, "rung": call.location.rung, "target": target(&call.target),
-                    })
-                })
-                .collect();
+            let mut before = ",\"addresses\":[";
+            self.each_group(|group| {
+                let (symbol, description) = self.documentation(&group.address);
+                let value = json!({
+                    "address": group.address.to_string(), "symbol": symbol, "description": description,
+                    "module": self.module(&group.address),
+                    "accesses": group.accesses.iter().map(access).collect::<Value>(),
+                });
+                write!(out, "{}{value}", std::mem::replace(&mut before, ","))
+            })?;
+            write!(out, "{}]", if before == "," { "" } else { before })?;
         }
-        if whole {
-            value["findings"] = self.xref.findings().iter().map(finding).collect();
-            value["never_called"] = self.without_caller().map(|file| file.number).collect();
-            value["entries"] = self
-                .calls
-                .files
-                .iter()
-                .flat_map(|file| {
-                    file.entries.iter().map(|entry| {
-                        json!({
-                            "file": file.number, "runs_as": entry.kind.as_str(), "source": entry.source,
-                        })
-                    })
+        for (name, value) in self.describe_rest(only_findings) {
+            write!(out, ",{}:{value}", json!(name))?;
+        }
+        writeln!(out, "}}")?;
+        Ok(())
+    }
+
+    /// What is said about the program as a whole.
+    fn describe_rest(&self, only_findings: bool) -> serde_json::Map<String, Value> {
+        let mut value = serde_json::Map::new();
+        let mut put = |name: &str, list: Value| drop(value.insert(name.to_owned(), list));
+        if !only_findings {
+            let call = |call: &analysis::Call| json!({"file": call.location.file, "rung": call.location.rung, "target": target(&call.target)});
+            put("calls", self.calls.calls.iter().map(call).collect());
+        }
+        if self.groups.is_none() {
+            put("findings", self.xref.findings().iter().map(finding).collect());
+            put("never_called", self.without_caller().map(|file| file.number).collect());
+            let entries = self.calls.files.iter().flat_map(|file| {
+                let entry = |entry: &analysis::Entry| {
+                    json!({"file": file.number, "runs_as": entry.kind.as_str(), "source": entry.source})
+                };
+                file.entries.iter().map(entry)
+            });
+            put("entries", entries.collect());
+            let unresolved = |it: &analysis::Unresolved<'_>| {
+                json!({
+                    "file": it.location.file, "rung": it.location.rung, "mnemonic": it.mnemonic.to_string(),
+                    "operand": it.operand, "text": it.text, "why": it.kind.as_str(),
                 })
-                .collect();
-            value["unresolved"] = self
-                .xref
-                .unresolved()
-                .iter()
-                .map(|it| {
-                    json!({
-                        "file": it.location.file, "rung": it.location.rung, "mnemonic": it.mnemonic.to_string(),
-                        "operand": it.operand, "text": it.text, "why": it.kind.as_str(),
-                    })
-                })
-                .collect();
-            value["notes"] = self
-                .xref
-                .notes()
-                .iter()
-                .map(|note| {
-                    json!({
-                        "note": note.as_str(), "rung": note.location().map(|location| location.to_string()),
-                    })
-                })
-                .collect();
+            };
+            put("unresolved", self.xref.unresolved().iter().map(unresolved).collect());
+            let note = |note: &analysis::Note| json!({"note": note.as_str(), "rung": note.location().map(|location| location.to_string())});
+            put("notes", self.xref.notes().iter().map(note).collect());
         }
         value
     }
@@ -168,17 +161,15 @@ impl Report<'_> {
         Some(format!("slot {} {name}, word {}{bit}{beyond}", point.slot.number, point.word))
     }
 
-    fn print(&self, only_findings: bool, whole: bool, out: &mut dyn Write) -> Result<(), Error> {
+    fn print(&self, only_findings: bool, out: &mut dyn Write) -> Result<(), Error> {
         writeln!(out, "{}", self.opened.title())?;
         if !only_findings {
-            for group in &self.groups {
-                self.print_group(group, out)?;
-            }
+            self.each_group(|group| self.print_group(group, out))?;
             for line in &self.calls_asked {
                 writeln!(out, "{line}")?;
             }
         }
-        if whole {
+        if self.groups.is_none() {
             self.print_findings(out)?;
         }
         Ok(())
