@@ -36,6 +36,8 @@ mod rung;
 pub mod scene;
 mod text;
 
+pub use text::clean;
+
 use std::convert::Infallible;
 use std::io;
 use std::ops::RangeInclusive;

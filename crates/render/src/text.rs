@@ -13,7 +13,7 @@ pub(crate) fn columns(c: char) -> Option<usize> {
 
 /// The text with every character that has no certain place on the grid spelled out (`\x1B`), so that
 /// a project cannot send control sequences to a terminal and nothing disappears. Tabs become spaces.
-pub(crate) fn clean(text: &str) -> Cow<'_, str> {
+pub fn clean(text: &str) -> Cow<'_, str> {
     if text.chars().all(|c| columns(c).is_some()) {
         return Cow::Borrowed(text);
     }
@@ -54,8 +54,12 @@ pub(crate) fn wrap(text: &str, limit: usize) -> Vec<String> {
     let limit = limit.max(2);
     let mut lines = Vec::new();
     let mut rest = text.trim_end();
-    while width(rest) > limit {
+    // Only as much is measured as one line takes, so the cost stays linear in the text.
+    loop {
         let fits = fitting(rest, limit);
+        if fits == rest.len() {
+            break;
+        }
         let (start, _) = rest.split_at(fits);
         let at_space = rest[fits..].starts_with(' ');
         let cut = if at_space { Some(fits) } else { start.rfind(' ').map(|at| at + 1) };
@@ -88,5 +92,7 @@ mod tests {
         assert_eq!(wrap("      wide", 4), ["    ", "wide"].map(|l| l.trim_end()));
         assert_eq!(wrap("温度温度温", 4), ["温度", "温度", "温"]);
         assert_eq!(wrap("", 4), [""]);
+        // Would take minutes if each line measured the rest of the text.
+        assert_eq!(wrap(&"a ".repeat(1_000_000), 50).len(), 40_000);
     }
 }
