@@ -64,6 +64,27 @@ impl From<io::Error> for Error {
     }
 }
 
+/// Passes text on with every character that could command a terminal spelled out (`\x1B`): names,
+/// symbols and descriptions come from projects of strangers.
+pub struct Printable<W>(pub W);
+
+impl<W: io::Write> io::Write for Printable<W> {
+    /// Formatted output arrives in whole characters; bytes that are none become replacement characters.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write_all(printable(&String::from_utf8_lossy(bytes)).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// The text as [`Printable`] writes it; line ends stay.
+pub fn printable(text: &str) -> String {
+    text.split('\n').map(render::clean).collect::<Vec<_>>().join("\n")
+}
+
 /// A table with left-aligned columns as wide as their widest cell; columns whose every cell below
 /// the heading is a number stand right.
 pub struct Columns {
@@ -76,9 +97,9 @@ impl Columns {
         Columns { rows: vec![headings.iter().map(|heading| (*heading).to_owned()).collect()] }
     }
 
-    /// Adds a row; missing cells are empty.
+    /// Adds a row; missing cells are empty. Cells are cleaned here, before they are measured.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().collect());
+        self.rows.push(cells.into_iter().map(|cell| render::clean(&cell).into_owned()).collect());
     }
 
     /// No row below the headings.
@@ -117,6 +138,19 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
+
+    #[test]
+    fn texts_of_a_project_cannot_command_the_terminal() {
+        let mut out = Vec::new();
+        let symbol = "A\u{1B}[2J\u{9B}1mB";
+        writeln!(Printable(&mut out), "T4:0  {symbol}").expect("a vector takes all");
+        let mut table = Columns::new(&["Symbol"]);
+        table.row([format!("{symbol}\n")]);
+        table.write(&mut out, "").expect("a vector takes all");
+        let text = String::from_utf8(out).expect("text");
+        assert_eq!(text, "T4:0  A\\x1B[2J\\x9B1mB\nSymbol\nA\\x1B[2J\\x9B1mB\\x0A\n");
+    }
 
     #[test]
     fn numbers_stand_right_and_lines_end_clean() {

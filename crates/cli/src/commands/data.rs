@@ -8,11 +8,14 @@ use serde_json::json;
 use super::{Opened, each_project, one_line};
 use crate::args::{DataArguments, Radix};
 use crate::files;
-use crate::output::{Columns, Error, Outcome};
+use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
     each_project(&paths, &arguments.input, |opened, out| {
+        // JSON has its own way to spell control characters.
+        let mut printable = Printable(&mut *out);
+        let out: &mut dyn Write = if arguments.input.json { out } else { &mut printable };
         let mut outcome = Outcome::Done;
         let mut json_files = Vec::new();
         let mut json_values = Vec::new();

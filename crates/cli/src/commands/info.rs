@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::{Opened, diagnostics_json, each_project};
 use crate::args::InfoArguments;
-use crate::output::{Columns, Error, Outcome};
+use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &InfoArguments) -> Result<Outcome, Error> {
     let mut first = true;
@@ -19,7 +19,7 @@ pub fn run(arguments: &InfoArguments) -> Result<Outcome, Error> {
             if !std::mem::take(&mut first) {
                 writeln!(out)?;
             }
-            print(opened, out)?;
+            print(opened, &mut Printable(out))?;
         }
         Ok(Outcome::Done)
     })

@@ -13,7 +13,7 @@ mod trace;
 mod verify;
 mod xref;
 
-use std::io::{IsTerminal, Write};
+use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 use ladder::{Documentation, Image, Project, Severity};
@@ -21,7 +21,7 @@ use rss::Mode;
 
 use crate::args::{Arguments, Command, ImageChoice, Input};
 use crate::files;
-use crate::output::{Error, Outcome};
+use crate::output::{Error, Outcome, printable};
 
 /// Runs the command that was asked for.
 pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
@@ -75,14 +75,16 @@ impl Opened {
     }
 }
 
-/// Reads a file whole, up to a size no project comes near.
+/// Reads a file whole, up to a size no project comes near, whatever its directory entry states.
 fn read_file(path: &Path) -> Result<Vec<u8>, String> {
-    const LIMIT: u64 = 256 << 20;
-    let size = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
-    if size > LIMIT {
-        return Err(format!("expected a project of at most {LIMIT} bytes, found {size}"));
+    const LIMIT: u64 = 64 << 20;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
+    file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > LIMIT {
+        return Err(format!("expected a project of at most {LIMIT} bytes, found more"));
     }
-    std::fs::read(path).map_err(|error| error.to_string())
+    Ok(bytes)
 }
 
 pub(crate) fn open(path: &Path, mode: Mode) -> Result<Project, String> {
@@ -116,7 +118,7 @@ fn each_project(
                     let line = serde_json::json!({"file": path.display().to_string(), "error": why});
                     writeln!(out, "{line}")?;
                 }
-                bar.suspend(|| eprintln!("{}: {why}", path.display()));
+                bar.suspend(|| eprintln!("{}", printable(&format!("{}: {why}", path.display()))));
                 Outcome::Unreadable
             }
         };
@@ -150,13 +152,8 @@ fn one_project(
     // Never let partial data pass for the whole.
     out.flush()?;
     for diagnostic in opened.project.diagnostics.iter().filter(|d| d.severity >= Severity::Warning).take(20) {
-        eprintln!(
-            "{}: {}: {}: {}",
-            opened.path.display(),
-            diagnostic.severity.as_str(),
-            diagnostic.place,
-            diagnostic.message
-        );
+        let (severity, place, message) = (diagnostic.severity.as_str(), &diagnostic.place, &diagnostic.message);
+        eprintln!("{}", printable(&format!("{}: {severity}: {place}: {message}", opened.path.display())));
     }
     let more = opened.project.diagnostics.iter().filter(|d| d.severity >= Severity::Warning).count().saturating_sub(20);
     if more > 0 {

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::{Opened, each_project, one_line};
 use crate::args::AddressArguments;
 use crate::files;
-use crate::output::{Columns, Error, Outcome};
+use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &AddressArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
@@ -22,7 +22,7 @@ pub fn run(arguments: &AddressArguments) -> Result<Outcome, Error> {
         if arguments.input.json {
             writeln!(out, "{}", describe(opened, &report, &elements))?;
         } else {
-            print(opened, &report, &elements, !wanted.is_empty(), out)?;
+            print(opened, &report, &elements, !wanted.is_empty(), &mut Printable(out))?;
         }
         Ok(if elements.is_empty() && !wanted.is_empty() { Outcome::Finding } else { Outcome::Done })
     })

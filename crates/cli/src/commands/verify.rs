@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::{mode, read_file};
 use crate::args::VerifyArguments;
 use crate::files;
-use crate::output::{Columns, Error, Outcome};
+use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
     let paths = files::expand(&arguments.files, files::PROJECTS).map_err(Error::Use)?;
@@ -28,7 +28,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
                 if arguments.json {
                     writeln!(out, "{}", line(&name, &verification, &code))?;
                 } else {
-                    print(&name, &verification, &code, &mut out)?;
+                    print(&name, &verification, &code, &mut Printable(&mut out))?;
                 }
                 judge(&verification, &code)
             }
