@@ -1,6 +1,6 @@
 //! Where scenarios get their programs: files beside them, ladder text inside them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use convert::slc::rung::parse_rungs;
 use ladder::{Constant, Element, Family, Image, Operand, Rung, Series, Severity};
@@ -10,14 +10,17 @@ use crate::commands::open;
 
 /// Loads for scenarios of one folder.
 pub struct FolderLoader {
-    /// Folder that relative paths start from.
+    /// Folder that relative paths start from; what is not there is looked for from the current folder.
     pub folder: PathBuf,
 }
 
 impl Loader for FolderLoader {
     fn program(&self, path: &str) -> Result<Image, String> {
         // A scenario written on Windows means the same file.
-        let project = open(&self.folder.join(path.replace('\\', "/")), rss::Mode::Permissive)?;
+        let path = path.replace('\\', "/");
+        let beside = self.folder.join(&path);
+        let file = if beside.exists() || !Path::new(&path).exists() { beside } else { PathBuf::from(path) };
+        let project = open(&file, rss::Mode::Permissive)?;
         match project.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error) {
             // A test on half a program would prove nothing.
             Some(worst) => Err(format!("not all of it could be read: {}: {}", worst.place, worst.message)),

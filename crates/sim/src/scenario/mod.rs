@@ -55,7 +55,7 @@ pub struct Scenario {
 /// The program of a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// A file, as the scenario spells its path (relative to the scenario's own folder).
+    /// A file, as the scenario spells its path (relative to the scenario's own folder, else to the current one).
     File(Spot<String>),
     /// Ladder in the scenario itself.
     Inline(Vec<Routine>),
