@@ -134,7 +134,7 @@ impl fmt::Display for Failure {
 pub fn run(scenario: &Scenario, loader: &dyn Loader, choices: Choices) -> Result<Report, RunError> {
     let (image, mut options) = image(scenario, loader)?;
     options.choices = choices;
-    options.addresses = named(scenario).map(|spot| address(spot)).collect::<Result<_, _>>()?;
+    options.addresses = named(scenario).map(address).collect::<Result<_, _>>()?;
     options.addresses.iter_mut().for_each(|address| address.indexed = false);
     let program = Program::compile(&image, &options).map_err(RunError::Refused)?;
     let approximations = program.approximations().to_vec();
