@@ -1,5 +1,7 @@
 //! `CHANNEL CONFIGURATION`: communication channels, their records and decoded settings.
 
+mod words;
+
 use crate::archive::{Reader, Record, Writer};
 use crate::error::Result;
 use crate::processor::Model;
@@ -204,6 +206,9 @@ pub struct General {
     pub append_1: u8,
     /// Second AWA append character, high byte of [9] (printed).
     pub append_2: u8,
+    /// Equal to a record beside a printout but for the fields above: settings without a known place
+    /// have the values of [`crate::tables::GENERAL_AS_PRINTED`].
+    pub as_printed: bool,
 }
 
 /// Serial driver settings.
@@ -223,6 +228,9 @@ pub struct Serial {
     pub baud: u8,
     /// Line options, high byte of [25] (inferred).
     pub line_options: u8,
+    /// Equal to a record of the same driver beside a printout but for the fields above: settings
+    /// without a known place have the values of [`crate::tables::serial_as_printed`].
+    pub as_printed: bool,
 }
 
 /// Ethernet settings.
@@ -246,6 +254,9 @@ pub struct Ethernet {
     pub protocols: u16,
     /// Port speed mask [66] (inferred).
     pub port_speed: u16,
+    /// Equal to a record beside a printout but for the fields above: settings without a known place
+    /// have the values of [`crate::tables::ETHERNET_AS_PRINTED`].
+    pub as_printed: bool,
 }
 
 impl Ethernet {
@@ -261,7 +272,7 @@ impl Ethernet {
         self.protocols & 2 != 0
     }
 
-    /// HTTP server enabled (printed).
+    /// HTTP server enabled (inferred: every printout says yes, and the bit is set beside all of them).
     #[must_use]
     pub fn http(&self) -> bool {
         self.protocols & 0x100 != 0
@@ -311,6 +322,7 @@ impl<'a> Channel<'a> {
             services: record.word(5)?,
             append_1,
             append_2,
+            as_printed: words::as_printed(&record),
         })
     }
 
@@ -329,6 +341,7 @@ impl<'a> Channel<'a> {
             ack_timeout: word(23)?,
             baud,
             line_options,
+            as_printed: words::as_printed(&record),
         })
     }
 
@@ -351,7 +364,20 @@ impl<'a> Channel<'a> {
             name_servers: [address(27)?, address(29)?],
             protocols: word(63)?,
             port_speed: word(66)?,
+            as_printed: words::as_printed(&record),
         })
+    }
+
+    /// Words other than zero that no field of the three kinds of settings tells; the marks, lengths and
+    /// check values of records are not counted.
+    #[must_use]
+    pub fn unexplained_words(&self) -> usize {
+        self.records()
+            .map(|record| match record {
+                Ok(record) => words::unexplained(&record),
+                Err(at) => self.bytes.get(at..).unwrap_or_default().chunks(2).filter(|word| **word != [0, 0]).count(),
+            })
+            .sum()
     }
 }
 
@@ -425,6 +451,7 @@ mod tests {
         assert_eq!((general.owner_timeout, general.passthru_link_id), (60, 1));
         assert_eq!((general.append_1, general.append_2), (b'\r', b'\n'));
         let settings = serial.serial().expect("serial record");
+        assert!(general.as_printed && settings.as_printed);
         assert_eq!((settings.driver, settings.source_id), (8, 5));
         assert_eq!((settings.baud, settings.ack_timeout), (4, 50));
         assert_eq!(serial.ethernet(), None);
@@ -433,8 +460,24 @@ mod tests {
         assert_eq!(settings.mask, Ipv4Addr::new(255, 255, 255, 0));
         assert_eq!(settings.inactivity_timeout, 30);
         assert!(settings.bootp() && settings.http() && !settings.dhcp());
+        // Word 15 is zero here.
+        assert!(!settings.as_printed);
+        assert_eq!((serial.unexplained_words(), ethernet.unexplained_words()), (0, 1));
         assert!(ethernet.records().all(|r| r.is_ok_and(|r| r.crc_ok())));
         assert_eq!(serialize(&record), Ok(bytes));
+    }
+
+    #[test]
+    fn an_unknown_bit_is_not_as_printed() {
+        let mut bytes = sample();
+        // High byte of the line options: envelope 20, model and counts 5, general record 24, id and length 4.
+        bytes[20 + 5 + 24 + 4 + 2 * 11 + 1] ^= 0x40;
+        let parsed = parse::<ChannelConfiguration>(&bytes, "S", Mode::Permissive);
+        let serial = parsed.value.channels[0];
+        assert!(serial.serial().is_some_and(|s| !s.as_printed && s.baud == 4));
+        assert!(serial.general().is_some_and(|g| g.as_printed));
+        // The driver options in word 15 and the line options in word 25.
+        assert_eq!(serial.unexplained_words(), 2);
     }
 
     #[test]

@@ -444,6 +444,38 @@ pub fn serial_driver(code: u16) -> Option<(&'static str, Evidence)> {
     }
 }
 
+/// Settings of the general record without a known place, as printed beside every record that differs
+/// in decoded words only.
+pub const GENERAL_AS_PRINTED: &[(&str, &str)] = &[("Write Protected", "No")];
+
+/// The same for the record of an Ethernet channel.
+pub const ETHERNET_AS_PRINTED: &[(&str, &str)] = &[
+    ("SNMP Enable", "No"),
+    ("HTTP Enable", "Yes"),
+    ("Auto Negotiate Enable", "Yes"),
+    ("Port Speed Enable", "10/100 Mbps Full Duplex/Half Duplex"),
+];
+
+/// The same for a serial driver, by its code.
+pub fn serial_as_printed(driver: u16) -> &'static [(&'static str, &'static str)] {
+    match driver {
+        8 => &[
+            ("Parity", "NONE"),
+            ("Control Line", "No Handshaking"),
+            ("Error Detection", "CRC"),
+            ("Embedded Responses", "Auto Detect"),
+            ("Duplicate Packet Detect", "Yes"),
+        ],
+        9 => &[
+            ("Parity", "NONE"),
+            ("Control Line", "No Handshaking"),
+            ("InterCharacter Timeout(x1 ms)", "0"),
+            ("Pre Transmit Delay(x1 ms)", "0"),
+        ],
+        _ => &[],
+    }
+}
+
 /// Base-unit variant: the four hexadecimal digits of a word of the packed
 /// I/O configuration (evidence: inferred).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]

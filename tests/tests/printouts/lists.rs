@@ -45,49 +45,21 @@ pub(crate) fn io(pair: &Pair<'_>) -> Outcome {
     outcome
 }
 
-/// Drivers, and every printed setting that the model gives under the printed name.
-///
-/// A setting that the model does not give is no difference: the words behind it are counted as
-/// unexplained there. The addresses and time limits must be among the given ones.
+/// Drivers, and every printed setting by its printed name.
 pub(crate) fn channels(pair: &Pair<'_>) -> Outcome {
     let mut outcome = Outcome::default();
     for channel in &pair.report.printout.channels {
         let read = pair.image.channels.iter().find(|c| c.number == channel.number);
-        let driver = read.map(|c| c.driver.to_lowercase());
-        outcome.row(format!("channel {} driver", channel.number), Some(channel.driver.to_lowercase()), driver);
+        let driver = read.map(|c| c.driver.as_str());
+        outcome.row(format!("channel {} driver", channel.number), Some(channel.driver.as_str()), driver);
+        // Contact and location are empty in all reports: nothing to compare.
         for setting in channel.settings.iter().filter(|s| !s.value.is_empty()) {
-            let same = |s: &&ladder::Setting| label(&s.name) == label(&setting.label);
-            let value = read.and_then(|c| c.settings.iter().find(same)).map(|s| s.value.as_str());
-            let needed = NEEDED.iter().any(|n| label(n) == label(&setting.label));
-            let printed = setting.value.trim_end_matches(" (decimal)");
-            if value.is_some() || needed {
-                outcome.row(format!("channel {} {}", channel.number, setting.label), Some(printed), value);
-            }
+            let value = read.and_then(|c| c.settings.iter().find(|s| s.name == setting.label));
+            let value = value.map(|s| s.value.as_str());
+            outcome.row(format!("channel {} {}", channel.number, setting.label), Some(setting.value.as_str()), value);
         }
     }
     outcome
-}
-
-/// Settings that a person looks for first.
-const NEEDED: &[&str] = &[
-    "IP Address",
-    "Subnet Mask",
-    "Gateway Address",
-    "Baud",
-    "Source ID",
-    "Msg Connection Timeout",
-    "Msg Reply Timeout",
-    "Inactivity Timeout",
-    "Bootp Enable",
-    "Dhcp Enable",
-    "Edit Resource/Owner Timeout",
-    "Passthru Link ID",
-];
-
-/// A label without unit, spaces and case: RSLogix prints `ACK Timeout(x20 ms)` and `Dhcp Enable`.
-fn label(text: &str) -> String {
-    let bare = text.split('(').next().unwrap_or_default().replace("HTTP Server", "HTTP");
-    bare.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
 }
 
 /// Program files that RSLogix lists: all but unused numbers.

@@ -1,10 +1,10 @@
-//! Processor, I/O, channels and memory figures: records to the model, codes to names with their evidence.
+//! Processor, I/O and memory figures: records to the model, codes to names with their evidence.
 
-use ladder::{Channel, Confidence, Family, IoConfiguration, IoRange, Memory, Module, Processor, Setting, Slot};
+use ladder::{Confidence, Family, IoConfiguration, IoRange, Memory, Module, Processor, Slot};
 use rss::io::{IoLayout, SlotModule};
 use rss::tables::{self, Evidence};
 
-fn confidence(evidence: Evidence) -> Confidence {
+pub(super) fn confidence(evidence: Evidence) -> Confidence {
     match evidence {
         Evidence::Printed | Evidence::Proven => Confidence::Proven,
         Evidence::Inferred => Confidence::Inferred,
@@ -109,60 +109,6 @@ fn module(module: &SlotModule, model: u16) -> Module {
         ),
         SlotModule::IdCode(code) => named(tables::slc_module(*code), format!("ID {code}")),
     }
-}
-
-pub(crate) fn channels(record: &rss::channel::ChannelConfiguration<'_>) -> Vec<Channel> {
-    let channels = record.channels.iter().zip(0u16..);
-    channels.map(|(channel, number)| describe_channel(channel, number)).collect()
-}
-
-fn describe_channel(channel: &rss::channel::Channel<'_>, number: u16) -> Channel {
-    use Confidence::{Inferred, Proven};
-    let mut settings = Vec::new();
-    let mut add = |name: &str, value: String, confidence: Confidence| {
-        settings.push(Setting { name: name.to_owned(), value, confidence });
-    };
-    let yes = |on: bool| if on { "Yes" } else { "No" }.to_owned();
-    let mut explained = 0;
-    if let Some(general) = channel.general() {
-        add("Edit Resource/Owner Timeout (x1 sec)", general.owner_timeout.to_string(), Proven);
-        add("Passthru Link ID (dec)", general.passthru_link_id.to_string(), Proven);
-        add("Comms Servicing Selection", yes(general.services & 1 != 0), Inferred);
-        add("Message Servicing Selection", yes(general.services & 2 != 0), Inferred);
-        explained += 4;
-    }
-    let driver = if let Some(serial) = channel.serial() {
-        let name = tables::serial_driver(serial.driver);
-        match tables::baud_rate(serial.baud) {
-            Some((rate, evidence)) => add("Baud", rate.to_string(), confidence(evidence)),
-            None => add("Baud", format!("unknown (code {})", serial.baud), Confidence::Unknown),
-        }
-        add("Source ID (decimal)", serial.source_id.to_string(), Proven);
-        add("NAK and ENQ Retries", format!("{} and {}", serial.retries[0], serial.retries[1]), Inferred);
-        add("ACK Timeout (x20 ms)", serial.ack_timeout.to_string(), Proven);
-        explained += 5;
-        name.map_or_else(|| format!("serial, unknown driver (code {})", serial.driver), |(name, _)| name.to_owned())
-    } else if let Some(ethernet) = channel.ethernet() {
-        add("IP Address", ethernet.address.to_string(), Proven);
-        add("Subnet Mask", ethernet.mask.to_string(), Proven);
-        add("Gateway Address", ethernet.gateway.to_string(), Proven);
-        add("Primary Name Server", ethernet.name_servers[0].to_string(), Inferred);
-        add("Secondary Name Server", ethernet.name_servers[1].to_string(), Inferred);
-        add("BOOTP Enable", yes(ethernet.bootp()), Proven);
-        add("DHCP Enable", yes(ethernet.dhcp()), Proven);
-        add("HTTP Server Enable", yes(ethernet.http()), Proven);
-        add("Modbus TCP Enable", yes(ethernet.modbus_tcp()), Inferred);
-        add("Msg Connection Timeout (x1 ms)", ethernet.connection_timeout.to_string(), Proven);
-        add("Msg Reply Timeout (x1 ms)", ethernet.reply_timeout.to_string(), Proven);
-        add("Inactivity Timeout (x1 min)", ethernet.inactivity_timeout.to_string(), Proven);
-        explained += 15;
-        "Ethernet".to_owned()
-    } else {
-        "not configured, or a driver not known".to_owned()
-    };
-    let words = channel.as_bytes().chunks_exact(2);
-    let used = words.filter(|word| *word != [0, 0]).count();
-    Channel { number, driver, settings, unexplained_words: used.saturating_sub(explained) }
 }
 
 pub(crate) fn memory(record: &rss::compiler::Compiler<'_>, model: u16) -> Option<Memory> {

@@ -3,6 +3,7 @@
 //! Nothing is dropped silently: what a record holds and the model has no place for is reported in
 //! the project's diagnostics, and so is every deviation the byte layer found.
 
+mod channel;
 mod configuration;
 pub(crate) mod documentation;
 mod program;
@@ -125,12 +126,13 @@ impl<'f> ImageReader<'f> {
         if let Some(record) =
             self.read::<rss::channel::ChannelConfiguration<'_>>(kind, StreamKind::ChannelConfiguration)
         {
-            image.channels = configuration::channels(&record);
+            image.channels = channel::channels(&record);
         }
         if let Some(record) = self.read::<Compiler<'_>>(kind, StreamKind::Compiler) {
             image.memory = configuration::memory(&record, model);
         }
         self.data(kind, &mut image);
+        channel::hardware_address(&mut image.channels, &image.function_files, model);
         // The online image has no documentation of its own; its rungs refer to the main one's.
         let mut comments = match kind {
             ImageKind::Online => std::mem::take(&mut self.comments),
