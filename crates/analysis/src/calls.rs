@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use ladder::{Documentation, Family, FileType, Image, Operand, ProgramFileKind, Target as Documented, Value};
 
 use crate::location::{Location, instructions};
+use crate::xref::Symbols;
 
 /// Calls, interrupts and labels of an image.
 #[derive(Clone, Debug, Default)]
@@ -124,17 +125,18 @@ impl CallGraph {
     /// Interrupt routines that a SLC 500 assigns to the slots of modules stand in the modules'
     /// configuration and are not known here: such a file looks never called.
     pub fn build(image: &Image, documentation: &Documentation) -> CallGraph {
+        let symbols = Symbols::new(documentation);
         let mut graph = CallGraph::default();
         let mut labels: BTreeMap<(u16, u16), Label> = BTreeMap::new();
         for (location, instruction) in instructions(image) {
             let name = instruction.mnemonic.name().unwrap_or("");
             match name {
                 "JSR" => {
-                    let target = target(image, documentation, instruction.operands.first());
+                    let target = target(image, &symbols, instruction.operands.first());
                     graph.calls.push(Call { location, target });
                 }
                 "JMP" | "LBL" => {
-                    let Some(number) = label(documentation, instruction.operands.first()) else { continue };
+                    let Some(number) = label(&symbols, instruction.operands.first()) else { continue };
                     let key = (location.file, number);
                     let entry = labels.entry(key).or_insert_with(|| Label {
                         file: location.file,
@@ -264,12 +266,12 @@ fn add_entry(found: &mut Vec<(u16, Entry)>, number: i32, kind: EntryKind, source
     }
 }
 
-fn target(image: &Image, documentation: &Documentation, operand: Option<&Operand>) -> Target {
+fn target(image: &Image, symbols: &Symbols<'_>, operand: Option<&Operand>) -> Target {
     let number = match operand {
         Some(Operand::ProgramFile(number)) => Some(*number),
         Some(Operand::Constant(constant)) => constant.as_integer().and_then(|number| u16::try_from(number).ok()),
-        Some(Operand::Symbol(symbol)) => match documentation.by_symbol(symbol).map(|entry| &entry.target) {
-            Some(Documented::ProgramFileOperand(number)) => Some(*number),
+        Some(Operand::Symbol(symbol)) => match symbols.resolve(symbol) {
+            Some(Documented::ProgramFileOperand(number)) => Some(number),
             _ => None,
         },
         _ => None,
@@ -283,13 +285,13 @@ fn target(image: &Image, documentation: &Documentation, operand: Option<&Operand
     }
 }
 
-fn label(documentation: &Documentation, operand: Option<&Operand>) -> Option<u16> {
+fn label(symbols: &Symbols<'_>, operand: Option<&Operand>) -> Option<u16> {
     match operand? {
         // The file number that is stored can be stale: a label belongs to the file it stands in.
         Operand::Label { number, .. } => Some(*number),
         Operand::Constant(constant) => constant.as_integer().and_then(|number| u16::try_from(number).ok()),
-        Operand::Symbol(symbol) => match documentation.by_symbol(symbol).map(|entry| &entry.target) {
-            Some(Documented::Label { number, .. }) => Some(*number),
+        Operand::Symbol(symbol) => match symbols.resolve(symbol) {
+            Some(Documented::Label { number, .. }) => Some(number),
             _ => None,
         },
         _ => None,

@@ -29,6 +29,7 @@ use index::{Index, Span};
 
 pub use findings::{Finding, FindingKind, Reason};
 pub use query::Found;
+pub(crate) use symbols::Symbols;
 
 /// Who reads and writes what, for one image.
 pub struct CrossReference<'a> {

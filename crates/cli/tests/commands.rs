@@ -81,6 +81,17 @@ fn cross_reference_of_an_address_and_of_a_symbol() {
 }
 
 #[test]
+fn a_slot_with_more_words_than_any_module_has_still_reads() {
+    let path = folder("wide_slot").join("wide.json");
+    let mut project = json(&["export", "motor/motor.RSS", "--to", "json"]).remove(0);
+    project["io"][0]["inputs"]["words"] = 65_535.into();
+    let text_of = project.to_string().replace("I:0.0/1", "I:0.5000/1").replace("I:0/1", "I:0.5000/1");
+    std::fs::write(&path, text_of).expect("written");
+    let shown = text(&["xref", path.to_str().expect("a path"), "I:0.5000/1"]);
+    assert!(shown.contains("point 80001"), "{shown}");
+}
+
+#[test]
 fn data_tables_in_any_radix() {
     insta::assert_snapshot!("data_motor", text(&["data", "motor/motor.RSS", "T4", "N7", "B3:0/0"]));
     assert!(text(&["data", "motor/motor.RSS", "N7:1", "--radix", "hex"]).contains("N7:1  1F4"));

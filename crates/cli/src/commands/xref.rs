@@ -156,7 +156,8 @@ impl Report<'_> {
         let point = self.opened.image().io.resolve(address)?;
         let module = &point.slot.module;
         let name = module.catalog.as_deref().unwrap_or("unknown module");
-        let bit = point.bit.map(|bit| format!(" point {}", point.word * 16 + bit)).unwrap_or_default();
+        let bit =
+            point.bit.map(|bit| format!(" point {}", u32::from(point.word) * 16 + u32::from(bit))).unwrap_or_default();
         let beyond = if point.in_range { "" } else { " (the module has no such point)" };
         Some(format!("slot {} {name}, word {}{bit}{beyond}", point.slot.number, point.word))
     }
