@@ -70,8 +70,7 @@ fn read(root: &Path, text: &Path, projects: &[PathBuf]) -> Report {
 
 fn open(path: &Path) -> Option<Project> {
     let bytes = std::fs::read(path).ok()?;
-    let file = rss::Project::read(&bytes, rss::Mode::Permissive).ok()?;
-    Some(convert::from_rss::project(&file, ladder::Source::default()))
+    convert::open(&bytes, "", rss::Mode::Permissive).ok()
 }
 
 /// The outcome of every aspect, by its name.
