@@ -166,6 +166,10 @@ impl fmt::Display for Address {
             f.write_str("#")?;
         }
         write!(f, "{}", self.file_type)?;
+        if matches!(self.file_type, FileType::Unknown(_)) {
+            // `?15-7:0`: the type number would run into the file number.
+            f.write_str("-")?;
+        }
         match &self.file {
             Place::Number(n) if self.file_type.implied_file() == Some(*n) => {}
             place => write!(f, "{place}")?,

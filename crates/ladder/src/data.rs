@@ -211,10 +211,13 @@ impl DataFile {
         }
     }
 
-    /// `N7`, `T4`; function files without their number when it is 0 (`HSC`).
+    /// `N7`, `T4`; function files without their number when it is 0 (`HSC`); `?15-7` for file 7 of a
+    /// type that has no known letters.
     pub fn label(&self) -> String {
         match self.file_type.implied_file() {
             Some(number) if self.file_type.is_function_file() && number == self.number => self.file_type.to_string(),
+            // The type number would run into the file number.
+            _ if matches!(self.file_type, FileType::Unknown(_)) => format!("{}-{}", self.file_type, self.number),
             _ => format!("{}{}", self.file_type, self.number),
         }
     }

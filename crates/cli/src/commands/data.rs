@@ -5,7 +5,7 @@ use std::io::Write;
 use ladder::{Address, DataFile, FileType, Place, TimeBase, Value, format_float};
 use serde_json::json;
 
-use super::{Opened, each_project, one_line};
+use super::{Opened, each_project, one_line, write_json};
 use crate::args::{DataArguments, Radix};
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
@@ -35,7 +35,8 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
                         outcome = Outcome::Finding;
                     }
                     if arguments.input.json {
-                        json_values.push(json!({"address": address.to_string(), "value": text}));
+                        json_values
+                            .push(json!({"address": address.to_string(), "value": value.as_ref().map(value_json)}));
                     } else if let Some(text) = text {
                         let shown = opened.documentation().shown(&(&address).into(), "");
                         let symbol = shown.symbol.unwrap_or_default();
@@ -54,7 +55,7 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
         }
         if arguments.input.json {
             let file = opened.path.display().to_string();
-            writeln!(out, "{}", json!({"file": file, "data_files": json_files, "values": json_values}))?;
+            write_json(opened, json!({"file": file, "data_files": json_files, "values": json_values}), out)?;
         }
         Ok(outcome)
     })
@@ -208,28 +209,29 @@ fn print_file(opened: &Opened, file: &DataFile, radix: Option<Radix>, out: &mut 
     Ok(table.write(out, "  ")?)
 }
 
+/// The value of an element in JSON: numbers, strings, an object for a structured element.
+fn value_json(value: &Value) -> serde_json::Value {
+    let (names, cells) = structure(value);
+    // All cells but the time base are integers.
+    let cell = |cell: String| cell.parse::<i64>().map_or_else(|_| json!(cell), |number| json!(number));
+    match value {
+        Value::Bit(bit) => json!(u8::from(*bit)),
+        Value::Word(word) => json!(word),
+        Value::Long(long) => json!(long),
+        Value::Float(float) if float.is_finite() => json!(float),
+        Value::Float(float) => json!(format_float(*float)),
+        Value::Words(words) => words.iter().map(|word| word.cast_signed()).collect(),
+        Value::Text(text) => json!(text),
+        Value::Timer(_) | Value::Counter(_) | Value::Control(_) => {
+            let name = |name: &str| if name == "BASE" { "base".to_owned() } else { name.to_owned() };
+            names.iter().zip(cells).map(|(n, c)| (name(n), cell(c))).collect::<serde_json::Map<_, _>>().into()
+        }
+    }
+}
+
 fn file_json(opened: &Opened, file: &DataFile) -> serde_json::Value {
     let values = (0..file.elements).filter_map(|element| {
-        let value = file.value(element)?;
-        let (names, cells) = structure(&value);
-        let value = match &value {
-            Value::Word(word) => json!(word),
-            Value::Long(long) => json!(long),
-            Value::Float(float) if float.is_finite() => json!(float),
-            Value::Words(words) => words.iter().map(|word| word.cast_signed()).collect(),
-            Value::Text(text) => json!(text),
-            _ if !names.is_empty() => names
-                .iter()
-                .zip(cells)
-                .map(|(name, cell)| {
-                    // All cells but the time base are integers.
-                    let value = cell.parse::<i64>().map_or_else(|_| json!(cell), |number| json!(number));
-                    ((*name).to_ascii_uppercase().replace("BASE", "base"), value)
-                })
-                .collect::<serde_json::Map<_, _>>()
-                .into(),
-            other => json!(value_text(other, Radix::Dec)),
-        };
+        let value = value_json(&file.value(element)?);
         Some(json!({"address": element_address(opened, file, element).to_string(), "value": value}))
     });
     json!({

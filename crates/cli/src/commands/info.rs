@@ -6,7 +6,7 @@ use analysis::{Coverage, CrossReference};
 use ladder::{FileType, Image, ProgramFileKind, Severity};
 use serde_json::{Value, json};
 
-use super::{Opened, diagnostics_json, each_project};
+use super::{Opened, each_project, write_json};
 use crate::args::InfoArguments;
 use crate::output::{Columns, Error, Outcome, Printable};
 
@@ -14,7 +14,7 @@ pub fn run(arguments: &InfoArguments) -> Result<Outcome, Error> {
     let mut first = true;
     each_project(&arguments.files, &arguments.input, |opened, out| {
         if arguments.input.json {
-            writeln!(out, "{}", describe(opened))?;
+            write_json(opened, describe(opened), out)?;
         } else {
             if !std::mem::take(&mut first) {
                 writeln!(out)?;
@@ -128,7 +128,6 @@ fn describe(opened: &Opened) -> Value {
             "entries": opened.documentation().entries().len(),
         },
         "revision_notes": project.revision_notes.len(),
-        "diagnostics": diagnostics_json(project),
     })
 }
 

@@ -145,7 +145,11 @@ fn one_project(
         eprintln!("{}: the project holds no such image", opened.path.display());
         return Ok(Outcome::Finding);
     }
-    let outcome = work(&opened, out)?;
+    let mut outcome = work(&opened, out)?;
+    if opened.project.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        // Part of the input could not be read, whatever was printed of the rest.
+        outcome = outcome.max(Outcome::Unreadable);
+    }
     if json {
         return Ok(outcome);
     }
@@ -160,6 +164,12 @@ fn one_project(
         eprintln!("{}: {more} further findings, see `rungs info --json`", opened.path.display());
     }
     Ok(outcome)
+}
+
+/// Writes a document as one line, with what the reader found wrong: partial data must say so.
+fn write_json(opened: &Opened, mut document: serde_json::Value, out: &mut dyn Write) -> Result<(), Error> {
+    document["diagnostics"] = diagnostics_json(&opened.project);
+    Ok(writeln!(out, "{document}")?)
 }
 
 fn diagnostics_json(project: &Project) -> serde_json::Value {

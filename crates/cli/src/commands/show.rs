@@ -6,7 +6,7 @@ use convert::slc::rung::rung_text;
 use ladder::{ProgramFile, ProgramFileKind};
 use serde_json::json;
 
-use super::{Opened, each_project};
+use super::{Opened, each_project, write_json};
 use crate::args::ShowArguments;
 use crate::output::{Error, Outcome};
 
@@ -41,7 +41,7 @@ pub fn run(arguments: &ShowArguments) -> Result<Outcome, Error> {
             }
         }
         if arguments.input.json {
-            writeln!(out, "{}", describe(opened, arguments))?;
+            write_json(opened, describe(opened, arguments), out)?;
         } else {
             draw(opened, arguments, &style, out)?;
         }

@@ -8,7 +8,7 @@ use analysis::{
 use ladder::TimeBase;
 use serde_json::{Value, json};
 
-use super::{Opened, each_project, one_line};
+use super::{Opened, each_project, one_line, write_json};
 use crate::args::AddressArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
@@ -20,11 +20,18 @@ pub fn run(arguments: &AddressArguments) -> Result<Outcome, Error> {
         let report = TimerReport::build(opened.image(), &xref);
         let elements: Vec<&TimerCounter> = report.elements.iter().filter(|e| is_wanted(e, &wanted)).collect();
         if arguments.input.json {
-            writeln!(out, "{}", describe(opened, &report, &elements))?;
+            write_json(opened, describe(opened, &report, &elements), out)?;
         } else {
             print(opened, &report, &elements, !wanted.is_empty(), &mut Printable(out))?;
         }
-        Ok(if elements.is_empty() && !wanted.is_empty() { Outcome::Finding } else { Outcome::Done })
+        let mut outcome = Outcome::Done;
+        for text in &wanted {
+            if !report.elements.iter().any(|element| is_wanted(element, std::slice::from_ref(text))) {
+                eprintln!("{}: `{text}` is no timer or counter of this program", opened.path.display());
+                outcome = Outcome::Finding;
+            }
+        }
+        Ok(outcome)
     })
 }
 

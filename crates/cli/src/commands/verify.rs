@@ -48,12 +48,14 @@ pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
     Ok(outcome)
 }
 
-/// A stream that could not be read to its end is unreadable input; bytes or code that differ are a
-/// finding.
+/// A stream that could not be opened or read to its end is unreadable input; deviations, and bytes or
+/// code that differ, are a finding.
 fn judge(verification: &rss::verify::Verification, code: &CodeCheck) -> Outcome {
-    if verification.streams.iter().any(|stream| stream.error.is_some()) {
+    let deviations = || verification.streams.iter().flat_map(|stream| &stream.deviations);
+    let unopened = deviations().any(|deviation| deviation.space != rss::Space::Inflated);
+    if unopened || verification.streams.iter().any(|stream| stream.error.is_some()) {
         Outcome::Unreadable
-    } else if !verification.roundtrip || !code.differs.is_empty() {
+    } else if !verification.roundtrip || !code.differs.is_empty() || deviations().next().is_some() {
         Outcome::Finding
     } else {
         Outcome::Done

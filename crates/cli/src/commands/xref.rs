@@ -6,7 +6,7 @@ use analysis::{Access, CallGraph, CrossReference, Finding, Found, Group, Target}
 use ladder::Address;
 use serde_json::{Value, json};
 
-use super::{Opened, each_project, one_line};
+use super::{Opened, diagnostics_json, each_project, one_line};
 use crate::args::XrefArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
@@ -143,6 +143,7 @@ impl Report<'_> {
             let note = |note: &analysis::Note| json!({"note": note.as_str(), "rung": note.location().map(|location| location.to_string())});
             put("notes", self.xref.notes().iter().map(note).collect());
         }
+        put("diagnostics", diagnostics_json(&self.opened.project));
         value
     }
 

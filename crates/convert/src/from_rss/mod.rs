@@ -180,6 +180,17 @@ impl<'f> ImageReader<'f> {
         };
         image.data_files = holder.user.iter().map(data_file).collect();
         image.function_files = holder.function.iter().map(data_file).collect();
+        for file in image.data_files.iter().chain(&image.function_files) {
+            if let FileType::Unknown(code) = file.file_type {
+                self.diagnostics.push(Diagnostic {
+                    severity: Severity::Warning,
+                    place: format!("{}, in file {}", StreamKind::DataFiles.path(kind), file.number),
+                    message: format!(
+                        "type number {code} has no known letters; its words are kept and shown as they are"
+                    ),
+                });
+            }
+        }
         let module_files = holder.m.iter().map(data_file).filter(|file| file.elements > 0);
         image.data_files.extend(module_files);
         let status = image.data_file(FileType::S, 2);
