@@ -83,7 +83,8 @@ fn cross_reference_of_an_address_and_of_a_symbol() {
 #[test]
 fn a_slot_with_more_words_than_any_module_has_still_reads() {
     let path = folder("wide_slot").join("wide.json");
-    let mut project = json(&["export", "motor/motor.RSS", "--to", "json"]).remove(0);
+    let exported = text(&["export", "motor/motor.RSS", "--to", "json"]);
+    let mut project: Value = serde_json::from_str(&exported).expect("a JSON document");
     project["io"][0]["inputs"]["words"] = 65_535.into();
     let text_of = project.to_string().replace("I:0.0/1", "I:0.5000/1").replace("I:0/1", "I:0.5000/1");
     std::fs::write(&path, text_of).expect("written");
