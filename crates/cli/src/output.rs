@@ -89,17 +89,29 @@ pub fn printable(text: &str) -> String {
 /// the heading is a number stand right.
 pub struct Columns {
     rows: Vec<Vec<String>>,
+    /// Row and text of each note.
+    notes: Vec<(usize, String)>,
 }
+
+/// Columns that notes under a row keep to.
+const NOTE_WIDTH: usize = 100;
+/// How far notes stand in from their row.
+const NOTE_INDENT: &str = "          ";
 
 impl Columns {
     /// A table with these headings.
     pub fn new(headings: &[&str]) -> Columns {
-        Columns { rows: vec![headings.iter().map(|heading| (*heading).to_owned()).collect()] }
+        Columns { rows: vec![headings.iter().map(|heading| (*heading).to_owned()).collect()], notes: Vec::new() }
     }
 
     /// Adds a row; missing cells are empty. Cells are cleaned here, before they are measured.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().map(|cell| render::clean(&cell).into_owned()).collect());
+    }
+
+    /// Adds a text below the last row, for what would make the columns too wide. Broken at blanks.
+    pub fn note(&mut self, text: &str) {
+        self.notes.push((self.rows.len(), render::clean(text).into_owned()));
     }
 
     /// No row below the headings.
@@ -121,7 +133,8 @@ impl Columns {
             cells.peek().is_some() && cells.all(|text| is_number(&text))
         };
         let right: Vec<bool> = (0..count).map(right).collect();
-        for row in &self.rows {
+        let mut notes = self.notes.iter().peekable();
+        for (number, row) in (1..).zip(&self.rows) {
             let mut line = String::from(indent);
             for (column, (width, right)) in widths.iter().zip(&right).enumerate() {
                 let text = cell(row, column);
@@ -130,9 +143,30 @@ impl Columns {
                 line.push_str("  ");
             }
             writeln!(out, "{}", line.trim_end())?;
+            while let Some((_, text)) = notes.next_if(|(row, _)| *row == number) {
+                write_note(out, indent, text)?;
+            }
         }
         Ok(())
     }
+}
+
+fn write_note(out: &mut (impl io::Write + ?Sized), indent: &str, text: &str) -> io::Result<()> {
+    let mut line = format!("{indent}{NOTE_INDENT}");
+    let mut empty = true;
+    for word in text.split(' ') {
+        if !empty && line.chars().count() + 1 + word.chars().count() > NOTE_WIDTH {
+            writeln!(out, "{line}")?;
+            line = format!("{indent}{NOTE_INDENT}  ");
+            empty = true;
+        }
+        if !empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        empty = false;
+    }
+    writeln!(out, "{line}")
 }
 
 #[cfg(test)]
@@ -157,9 +191,11 @@ mod tests {
         let mut table = Columns::new(&["Name", "Rungs", "Description"]);
         table.row(["MAIN".into(), "10".into(), String::new()]);
         table.row(["A".into(), "5".into(), "x".into()]);
+        table.note(&["word"; 20].join(" "));
         let mut out = Vec::new();
         table.write(&mut out, "  ").expect("a vector takes all");
         let text = String::from_utf8(out).expect("text");
-        assert_eq!(text, "  Name  Rungs  Description\n  MAIN     10\n  A         5  x\n");
+        let note = format!("            {}\n              {}\n", ["word"; 17].join(" "), ["word"; 3].join(" "));
+        assert_eq!(text, format!("  Name  Rungs  Description\n  MAIN     10\n  A         5  x\n{note}"));
     }
 }

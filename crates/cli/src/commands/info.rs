@@ -75,6 +75,7 @@ fn describe(opened: &Opened) -> Value {
             "deny_future_access": processor.deny_future_access,
             "password_fields_used": processor.password_fields_used,
         },
+        "edited": image.is_edited(),
         "memory": image.memory.map(|memory| json!({
             "instruction_words_used": memory.instruction_words_used,
             "instruction_words_left": memory.instruction_words_left,
@@ -172,6 +173,8 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
             "{} instruction words used{data}, {} instruction words left",
             memory.instruction_words_used, memory.instruction_words_left
         );
+        // The figures of an edited program are not known before it is verified, on paper neither.
+        let text = if image.is_edited() { format!("*  (not verified; at the last verify: {text})") } else { text };
         line("Memory", &text)?;
     }
     let protection = match (processor.deny_future_access, processor.password_fields_used) {

@@ -202,21 +202,7 @@ fn table(elements: &[&&TimerCounter], title: &str, out: &mut dyn Write) -> Resul
         return Ok(());
     }
     writeln!(out, "{title}")?;
-    let mut table = Columns::new(&[
-        "Address",
-        "Kind",
-        "Base",
-        "Preset",
-        "Accum",
-        "Seconds",
-        "Box",
-        "State",
-        "Symbol",
-        "Timed in",
-        "Read in",
-        "Reset in",
-        "Written in",
-    ]);
+    let mut table = Columns::new(&["Address", "Kind", "Base", "Preset", "Accum", "Seconds", "Box", "State", "Symbol"]);
     for element in elements {
         let text = |value: Option<i32>| value.map(|value| value.to_string()).unwrap_or_default();
         let state = element.data.map(|data| {
@@ -243,12 +229,17 @@ fn table(elements: &[&&TimerCounter], title: &str, out: &mut dyn Write) -> Resul
             boxes.join(" "),
             state.unwrap_or_else(|| "no element".to_owned()),
             symbol,
-            timed.join(", "),
-            places(&element.read_by, true),
-            // RES clears the whole element: naming its members says nothing.
-            places(&element.reset_by, false),
-            places(&element.written_by, true),
         ]);
+        let uses = [
+            (if element.kind == ElementKind::Timer { "timed in" } else { "counted in" }, timed.join(", ")),
+            ("read in", places(&element.read_by, true)),
+            // RES clears the whole element: naming its members says nothing.
+            ("reset in", places(&element.reset_by, false)),
+            ("written in", places(&element.written_by, true)),
+        ];
+        for (what, places) in uses.iter().filter(|(_, places)| !places.is_empty()) {
+            table.note(&format!("{what} {places}"));
+        }
     }
     table.write(out, "  ")?;
     writeln!(out)?;
