@@ -56,6 +56,7 @@ pub(crate) mod code {
     pub(crate) const TIMER: u16 = 0x34;
     pub(crate) const IN_INTERRUPT: u16 = 0x35;
     pub(crate) const PID: u16 = 0x36;
+    pub(crate) const HIGH_SPEED: u16 = 0x37;
     pub(crate) const RET_IN_MAIN: u16 = 0x38;
 }
 
@@ -79,7 +80,7 @@ const MEANINGS: &[(u16, &str)] = &[
     (code::TIMER, "negative timer preset or accumulator"),
     (code::IN_INTERRUPT, "instruction not allowed in an interrupt or fault routine"),
     (code::PID, "PID parameter"),
-    (0x37, "high-speed counter"),
+    (code::HIGH_SPEED, "high-speed counter"),
     (code::RET_IN_MAIN, "RET in the main program"),
 ];
 

@@ -60,8 +60,13 @@ pub(crate) struct Layout {
     pub(crate) status: usize,
     /// First word after the data table files.
     pub(crate) user_end: u32,
+    /// Start, elements and words per element of the STI, EII and HSC function files.
+    interrupts: [Option<(u32, u32, u32)>; 3],
     words: u32,
 }
+
+/// Function files with interrupts.
+const INTERRUPTS: [FileType; 3] = [FileType::STI, FileType::EII, FileType::HSC];
 
 /// Slots have at most this many words behind them when nothing says how many.
 const MODULE_WORDS: u16 = 256;
@@ -101,6 +106,10 @@ impl Layout {
         }
         layout.place_modules(wanted, &mut block);
         layout.words = block.len() as u32;
+        layout.interrupts = INTERRUPTS.map(|file_type| {
+            let file = layout.files.iter().find(|file| file.file_type == file_type && file.number == 0)?;
+            Some((file.start, file.elements, file.size))
+        });
         (layout, block, unplaced)
     }
 
@@ -156,6 +165,13 @@ impl Layout {
             let elements = u32::from(words);
             self.files.push(FileInfo { file_type, number: slot, start, elements, size: 1 });
         }
+    }
+
+    /// First word of an element of the STI, EII or HSC function file.
+    pub(crate) fn interrupt(&self, file_type: FileType, element: u32) -> Option<u32> {
+        let index = INTERRUPTS.iter().position(|known| *known == file_type)?;
+        let (start, elements, size) = (*self.interrupts.get(index)?)?;
+        (element < elements).then(|| start + element * size)
     }
 
     pub(crate) fn words(&self) -> usize {

@@ -138,6 +138,19 @@ impl Machine {
         self.core().advance(nanoseconds(dt), &mut NoWatch);
     }
 
+    /// Pulses at high-speed counter `counter` of a MicroLogix 1100 to 1500, negative ones down. `false`:
+    /// there is no such counter, or it does not count now.
+    pub fn pulses(&mut self, counter: usize, count: i32) -> bool {
+        self.core().refill();
+        self.core().pulses(counter, count, &mut NoWatch)
+    }
+
+    /// An event at event input interrupt `number` of a MicroLogix 1100 to 1500. `false`: there is none.
+    pub fn event(&mut self, number: usize) -> bool {
+        self.core().refill();
+        self.core().event(number, &mut NoWatch)
+    }
+
     /// Scans of length `step` until `time` has passed, the last one shorter if it does not fit. Ends
     /// early when the controller stops. Returns the number of scans.
     pub fn run_for(&mut self, time: Duration, step: Duration) -> u64 {

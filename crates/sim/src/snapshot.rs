@@ -6,6 +6,7 @@ use std::fmt;
 
 use instr::exec::process::Loop;
 
+use crate::core::fast::FastCounter;
 use crate::fault::MajorFault;
 use crate::machine::Mode;
 use crate::op::Compiled;
@@ -83,9 +84,19 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
         long(&mut out, value);
     }
     let timed = state.timed;
-    out.extend_from_slice(&[timed.enabled.into(), timed.fine.into(), timed.executing.into(), timed.pending]);
+    out.extend_from_slice(&[timed.enabled.into(), timed.fine.into(), timed.executing.into()]);
     out.push(state.due.into());
     out.extend_from_slice(&state.events);
+    out.extend_from_slice(&state.event_inputs.to_le_bytes());
+    for counter in state.fast {
+        out.extend_from_slice(&[counter.loaded.into(), counter.set.into()]);
+        for value in [counter.high, counter.low, counter.overflow, counter.underflow] {
+            out.extend_from_slice(&value.to_le_bytes());
+        }
+        for word in [counter.mask, counter.high_output, counter.low_output] {
+            out.extend_from_slice(&word.to_le_bytes());
+        }
+    }
     out.push(MODES.iter().position(|mode| *mode == state.mode).unwrap_or(0) as u8);
     let fault = state.fault.map_or([0; 4], |fault| [1, fault.code, fault.file, fault.rung]);
     fault.into_iter().for_each(|word: u16| out.extend_from_slice(&word.to_le_bytes()));
@@ -143,10 +154,23 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
         enabled: reader.flag()?,
         fine: reader.flag()?,
         executing: reader.flag()?,
-        pending: reader.take::<1>()?[0],
     };
     state.due = reader.flag()?;
     state.events = reader.take::<8>()?;
+    state.event_inputs = reader.word()?;
+    for counter in &mut state.fast {
+        *counter = FastCounter {
+            loaded: reader.flag()?,
+            set: reader.flag()?,
+            high: reader.take().map(i32::from_le_bytes)?,
+            low: reader.take().map(i32::from_le_bytes)?,
+            overflow: reader.take().map(i32::from_le_bytes)?,
+            underflow: reader.take().map(i32::from_le_bytes)?,
+            mask: reader.word()?,
+            high_output: reader.word()?,
+            low_output: reader.word()?,
+        };
+    }
     let mode = reader.take::<1>()?[0];
     state.mode = *MODES.get(usize::from(mode)).ok_or(RestoreError::NotAState)?;
     let (present, code, file, rung) = (reader.word()?, reader.word()?, reader.word()?, reader.word()?);

@@ -1,5 +1,6 @@
 //! Everything that changes while a program runs.
 
+use crate::core::fast::FastCounter;
 use crate::fault::MajorFault;
 use crate::machine::Mode;
 use crate::op::Compiled;
@@ -42,8 +43,6 @@ pub(crate) struct TimedInterrupt {
     pub(crate) fine: bool,
     /// The routine is executing.
     pub(crate) executing: bool,
-    /// Interrupts waiting.
-    pub(crate) pending: u8,
 }
 
 /// Machine state: plain data.
@@ -77,8 +76,12 @@ pub(crate) struct State {
     pub(crate) timed: TimedInterrupt,
     /// A waiting interrupt was enabled: it runs at the next rung.
     pub(crate) due: bool,
-    /// Inputs as the event interrupts saw them last: two waiting counts per source.
+    /// Waiting interrupts per source of function files.
     pub(crate) events: [u8; 8],
+    /// First word of input terminals as the event interrupts saw it last.
+    pub(crate) event_inputs: u16,
+    /// High-speed counters.
+    pub(crate) fast: [FastCounter; 6],
     /// Indirect addresses that left their file, so far.
     pub(crate) strays: u64,
     /// Buffer of instructions that need copies of files; empty between instructions.
@@ -111,6 +114,8 @@ impl State {
             timed: TimedInterrupt::default(),
             due: false,
             events: [0; 8],
+            event_inputs: 0,
+            fast: [FastCounter::default(); 6],
             strays: 0,
             scratch: Vec::with_capacity(if program.needs_scratch() { 3 * program.data.len() } else { 0 }),
         }

@@ -53,7 +53,7 @@ impl Compiler<'_> {
 
     pub(super) fn device(&mut self, name: &str, given: &Given<'_>, instruction: &Instruction) -> Result<()> {
         match name {
-            "PID" => self.pid(given, instruction),
+            "PID" => self.pid(given),
             "RHC" => {
                 let dest = self.target(given.at(0))?;
                 self.act(Block::ClockRead { dest })
@@ -87,22 +87,22 @@ impl Compiler<'_> {
         }
     }
 
-    fn pid(&mut self, given: &Given<'_>, instruction: &Instruction) -> Result<()> {
+    fn pid(&mut self, given: &Given<'_>) -> Result<()> {
         let address = given.at(0).and_then(Operand::address);
         if !address.is_some_and(|address| matches!(address.file_type, FileType::PD | FileType::N)) {
             return Err(unusable(given.at(0), "a PID element or block"));
         }
         let at = self.start(given.at(0))?;
+        if let StartAt::Fixed { word, end } = at.at
+            && end - word < instr::exec::process::WORDS as u32
+        {
+            return Err("its block of 23 words reaches beyond the data file".to_owned());
+        }
         let process = self.source(given.at(1), false)?;
         let present = self.source(given.at(2), false)?;
         let control = self.target(given.at(2))?;
         let slot = self.pids;
         self.pids += 1;
-        self.approximate(
-            instruction,
-            "the published equation is computed in double precision; the controller's own rounding, and words 10 and 17 to \
-             22 of its block, are not published",
-        );
         self.always(Block::Pid { at, process, control, present, slot })
     }
 

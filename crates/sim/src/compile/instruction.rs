@@ -1,8 +1,8 @@
 //! One instruction of the model to one operation.
 
 use instr::by_mnemonic;
-use instr::exec::expression;
 use instr::exec::function::Function;
+use instr::exec::{coverage, expression};
 use ladder::{FileType, Instruction, Operand};
 
 use super::Compiler;
@@ -23,6 +23,12 @@ impl Compiler<'_> {
                 format!("{name} is not an instruction of this processor: it runs as on those that have it"),
             );
         }
+        if let Some(why) = coverage::undocumented(name) {
+            return Err(why.to_owned());
+        }
+        if let Some(why) = coverage::approximation(name) {
+            self.approximate(instruction, why);
+        }
         let operands: Vec<Operand> =
             instruction.operands.iter().filter(|operand| **operand != Operand::Empty).cloned().collect();
         let given = Given { operands: &operands };
@@ -31,9 +37,7 @@ impl Compiler<'_> {
             instr::Category::Timer => self.timer(name, &given),
             instr::Category::Counter => self.counter(name, &given),
             instr::Category::Compare => self.compare(name, &given),
-            instr::Category::Math | instr::Category::Conversion | instr::Category::Logic => {
-                self.math(name, &given, instruction)
-            }
+            instr::Category::Math | instr::Category::Conversion | instr::Category::Logic => self.math(name, &given),
             instr::Category::File | instr::Category::Sequencer => self.file(name, &given),
             instr::Category::Ascii => self.ascii(name, &given),
             instr::Category::ProgramControl => self.flow(name, &given, rung_start, instruction),
@@ -210,7 +214,7 @@ impl Compiler<'_> {
         Ok(long)
     }
 
-    fn math(&mut self, name: &str, given: &Given<'_>, instruction: &Instruction) -> Result<()> {
+    fn math(&mut self, name: &str, given: &Given<'_>) -> Result<()> {
         let unary = |name: &str| {
             Some(match name {
                 "MOV" => Unary::Move,
@@ -308,10 +312,6 @@ impl Compiler<'_> {
                 let at = self.start(given.at(0))?;
                 let length = self.source(given.at(1), false)?;
                 self.act(Block::SwapBytes { at, length })
-            }
-            "RMP" => {
-                self.approximate(instruction, "RMP: the layout of its control block is known in outline only");
-                Err("RMP is not simulated: the layout of its control block is not published".to_owned())
             }
             _ => Err("this instruction is not simulated".to_owned()),
         }

@@ -208,6 +208,7 @@ impl Compiler<'_> {
         self.here.instruction = NO_INSTRUCTION;
         let ends = file.rungs.last().is_some_and(ladder::Rung::is_end);
         if !ends {
+            self.structural(Op::Rung);
             self.structural(Op::End);
         }
         for (position, label, site) in std::mem::take(&mut self.jumps) {

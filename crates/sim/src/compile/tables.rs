@@ -124,6 +124,7 @@ impl Needs {
                     _ => 1,
                 }
             });
+            let words = words.max(block_words(entry.map(|entry| entry.mnemonic), index, operand));
             self.operand(operand, words);
         }
     }
@@ -198,6 +199,17 @@ impl Needs {
                 None => files.push(DataFile::new(*file_type, *number, elements)),
             }
         }
+    }
+}
+
+/// Words of a block of integers that an instruction works on from its first operand; what the operand
+/// is called differs by processor, what the block holds does not.
+fn block_words(mnemonic: Option<&str>, index: usize, operand: &Operand) -> u32 {
+    let integers = operand.address().is_some_and(|address| address.file_type == FileType::N);
+    match mnemonic {
+        Some("PID") if index == 0 && integers => instr::exec::process::WORDS as u32,
+        Some("MSG") if integers => 14,
+        _ => 1,
     }
 }
 

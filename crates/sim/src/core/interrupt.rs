@@ -24,7 +24,7 @@ pub(crate) mod flag {
 /// Words of an interrupt function file element.
 const PROGRAM_FILE: u32 = 0;
 const ERROR_CODE: u32 = 1;
-const FLAGS: u32 = 2;
+pub(super) const FLAGS: u32 = 2;
 const SET_POINT: u32 = 3;
 
 /// More timed interrupts than this in one call are counted as lost: a caller asked for hours at once.
@@ -35,14 +35,12 @@ const MILLISECOND: u64 = 1_000_000;
 impl Core<'_> {
     /// First word of the STI function file.
     fn timed_file(&self) -> Option<u32> {
-        let layout = &self.p.layout;
-        layout.file(FileType::STI, 0).and_then(|file| layout.files.get(file)).map(|info| info.start)
+        self.p.layout.interrupt(FileType::STI, 0)
     }
 
     /// Checks and loads interrupts on the way to run.
     pub(crate) fn enter_run_interrupts(&mut self) {
         self.s.timed.executing = false;
-        self.s.timed.pending = 0;
         self.s.timed.period = 0;
         self.s.events = [0; 8];
         if self.p.traits.status_file_sti() {
@@ -57,7 +55,8 @@ impl Core<'_> {
             }
             return;
         }
-        let Some(at) = self.timed_file() else { return };
+        self.enter_run_fast();
+        let Some(at) = self.timed_file().filter(|_| self.executing()) else { return };
         let flags = self.word(at + FLAGS);
         let file = self.word(at + PROGRAM_FILE);
         let exists = (3..=255).contains(&file) && self.p.entry(file).is_some();
@@ -84,7 +83,6 @@ impl Core<'_> {
 
     pub(crate) fn stop_interrupts(&mut self) {
         self.s.timed.period = 0;
-        self.s.timed.pending = 0;
         if self.p.traits.status_file_sti() {
             self.set_status_bit(status::STI_PENDING, false);
         }
@@ -214,30 +212,40 @@ impl Core<'_> {
         self.ended(ending);
     }
 
-    /// Count of waiting interrupts of the source at `at`: STI is source 0, EII elements follow.
+    /// Interrupt sources of function files, highest priority first, with their bit in the masks of UID,
+    /// UIE and UIF (recalled from the manuals, as the order of the waiting counts).
+    const SOURCES: [(u16, FileType, u32); 7] = [
+        (6, FileType::EII, 0),
+        (5, FileType::EII, 1),
+        (4, FileType::HSC, 0),
+        (3, FileType::EII, 2),
+        (2, FileType::EII, 3),
+        (1, FileType::HSC, 1),
+        (0, FileType::STI, 0),
+    ];
+
+    fn source_at(&self, (_, file_type, element): (u16, FileType, u32)) -> Option<u32> {
+        self.p.layout.interrupt(file_type, element)
+    }
+
+    /// Count of waiting interrupts of the source at `at`; sources beyond the listed ones share one.
     fn waiting(&mut self, at: u32) -> &mut u8 {
-        if self.timed_file() == Some(at) {
-            return &mut self.s.timed.pending;
-        }
-        let start = self.event_file().map_or(at, |(start, _)| start);
-        let size = self.event_file().map_or(1, |(_, size)| size);
-        let index = (at.saturating_sub(start) / size.max(1)) as usize & 7;
-        &mut self.s.events[index]
+        let index = Self::SOURCES.iter().position(|source| self.source_at(*source) == Some(at)).unwrap_or(7);
+        &mut self.s.events[index & 7]
     }
 
-    fn event_file(&self) -> Option<(u32, u32)> {
-        let layout = &self.p.layout;
-        layout.file(FileType::EII, 0).and_then(|file| layout.files.get(file)).map(|info| (info.start, info.size))
-    }
-
-    /// Interrupts that wait and are enabled again.
+    /// Interrupts that wait and are enabled again, highest priority first.
     pub(crate) fn events<W: Watch>(&mut self, watch: &mut W) {
         if self.p.traits.mx() {
-            let timed = self.timed_file();
-            if let Some(at) = timed {
-                while self.s.timed.pending > 0 && self.word(at + FLAGS) & flag::ENABLE != 0 && self.executing() {
-                    self.s.timed.pending -= 1;
-                    self.put_bits(at + FLAGS, flag::PENDING, self.s.timed.pending > 0);
+            if self.s.events == [0; 8] {
+                return;
+            }
+            for source in Self::SOURCES {
+                let Some(at) = self.source_at(source) else { continue };
+                while *self.waiting(at) > 0 && self.word(at + FLAGS) & flag::ENABLE != 0 && self.executing() {
+                    *self.waiting(at) -= 1;
+                    let more = *self.waiting(at) > 0;
+                    self.put_bits(at + FLAGS, flag::PENDING, more);
                     self.function_file_interrupt(at, watch);
                 }
             }
@@ -299,29 +307,11 @@ impl Core<'_> {
         self.s.due |= on && self.status_bit(status::STI_PENDING);
     }
 
-    /// UID, UIE, UIF: bits name the sources, from bit 0: EII3, EII2, EII1, EII0 above STI.
+    /// UID, UIE, UIF: bits name the sources.
     pub(crate) fn interrupt_mask(&mut self, change: MaskChange, types: Source) -> Exec<()> {
         let types = self.integer(types)? as u16;
-        // Bit and the function file with its element.
-        const SOURCES: [(u16, FileType, u32); 7] = [
-            (6, FileType::EII, 0),
-            (5, FileType::EII, 1),
-            (4, FileType::HSC, 0),
-            (3, FileType::EII, 2),
-            (2, FileType::EII, 3),
-            (1, FileType::HSC, 1),
-            (0, FileType::STI, 0),
-        ];
-        for (bit, file_type, element) in SOURCES {
-            if types >> bit & 1 == 0 {
-                continue;
-            }
-            let layout = &self.p.layout;
-            let info = layout.file(file_type, 0).and_then(|file| layout.files.get(file));
-            let Some(at) = info.filter(|info| element < info.elements).map(|info| info.start + element * info.size)
-            else {
-                continue;
-            };
+        for source in Self::SOURCES {
+            let Some(at) = self.source_at(source).filter(|_| types >> source.0 & 1 != 0) else { continue };
             match change {
                 MaskChange::Disable => self.put_bits(at + FLAGS, flag::ENABLE, false),
                 MaskChange::Enable => {
@@ -329,9 +319,7 @@ impl Core<'_> {
                     self.s.due = true;
                 }
                 MaskChange::Flush => {
-                    if file_type != FileType::HSC {
-                        *self.waiting(at) = 0;
-                    }
+                    *self.waiting(at) = 0;
                     self.put_bits(at + FLAGS, flag::PENDING | flag::LOST, false);
                 }
             }

@@ -104,9 +104,12 @@ impl Core<'_> {
             return;
         }
         let elapsed = std::mem::take(&mut self.s.since_scan);
-        self.s.limit = self.s.executed.saturating_add(self.p.watchdog);
+        self.refill();
         self.scan_times(elapsed);
         self.read_inputs();
+        if self.p.traits.mx() {
+            self.fast_inputs(watch);
+        }
         self.events(watch);
         if !self.executing() {
             return;
@@ -148,6 +151,11 @@ impl Core<'_> {
         self.set_status(status::AVERAGE_SCAN, average.min(u32::from(u16::MAX)) as u16);
         let fine = if mx { 100_000 } else { 1_000_000 };
         self.set_status(status::LAST_SCAN, (elapsed / fine).min(u64::from(u16::MAX)) as u16);
+    }
+
+    /// A new watchdog interval.
+    pub(crate) fn refill(&mut self) {
+        self.s.limit = self.s.executed.saturating_add(self.p.watchdog);
     }
 
     pub(crate) fn forced(&self) -> bool {

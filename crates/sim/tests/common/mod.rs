@@ -7,14 +7,14 @@ use ladder::{Address, Family, Value};
 use sim::{Choices, Machine, Options, Program};
 
 /// A machine in run mode and the time its scans take.
-pub struct Bench {
-    pub machine: Machine,
-    pub dt: Duration,
+pub(crate) struct Bench {
+    pub(crate) machine: Machine,
+    pub(crate) dt: Duration,
     scanned: bool,
 }
 
 /// Compiles `files` (number and rung texts) for a family; `addresses` must exist too.
-pub fn compile(family: Family, files: &[(u16, &str)], addresses: &[&str], choices: Choices) -> Program {
+pub(crate) fn compile(family: Family, files: &[(u16, &str)], addresses: &[&str], choices: Choices) -> Program {
     let files = files
         .iter()
         .map(|(number, text)| (*number, convert::slc::rung::parse_rungs(text, Some(family)).expect("rungs")))
@@ -31,11 +31,11 @@ pub fn compile(family: Family, files: &[(u16, &str)], addresses: &[&str], choice
 
 impl Bench {
     /// One main program, all addresses of `data` set before entering run.
-    pub fn new(family: Family, ladder: &str, data: &[(&str, i64)]) -> Bench {
+    pub(crate) fn new(family: Family, ladder: &str, data: &[(&str, i64)]) -> Bench {
         Bench::files(family, &[(2, ladder)], data, Choices::default())
     }
 
-    pub fn files(family: Family, files: &[(u16, &str)], data: &[(&str, i64)], choices: Choices) -> Bench {
+    pub(crate) fn files(family: Family, files: &[(u16, &str)], data: &[(&str, i64)], choices: Choices) -> Bench {
         let names: Vec<&str> =
             data.iter().map(|(name, _)| *name).chain(["S:65", "B3:7", "N7:20", "I:0", "O:0"]).collect();
         let mut machine = Machine::new(compile(family, files, &names, choices));
@@ -46,12 +46,12 @@ impl Bench {
         Bench { machine, dt: Duration::from_millis(10), scanned: false }
     }
 
-    pub fn set(&mut self, address: &str, value: i64) -> &mut Self {
+    pub(crate) fn set(&mut self, address: &str, value: i64) -> &mut Self {
         set(&mut self.machine, address, value);
         self
     }
 
-    pub fn scans(&mut self, count: usize) -> &mut Self {
+    pub(crate) fn scans(&mut self, count: usize) -> &mut Self {
         for _ in 0..count {
             let dt = if self.scanned { self.dt } else { Duration::ZERO };
             self.machine.scan(dt);
@@ -61,7 +61,7 @@ impl Bench {
     }
 
     /// A scan with the bit 0, then one with it 1, `count` times.
-    pub fn edges(&mut self, bit: &str, count: usize) -> &mut Self {
+    pub(crate) fn edges(&mut self, bit: &str, count: usize) -> &mut Self {
         for _ in 0..count {
             self.set(bit, 0).scans(1).set(bit, 1).scans(1);
         }
@@ -69,7 +69,7 @@ impl Bench {
     }
 
     #[track_caller]
-    pub fn expect(&mut self, expected: &[(&str, i64)]) -> &mut Self {
+    pub(crate) fn expect(&mut self, expected: &[(&str, i64)]) -> &mut Self {
         for (address, value) in expected {
             assert_eq!(self.get(address), *value, "{address}");
         }
@@ -78,7 +78,7 @@ impl Bench {
 
     /// Bits as 0 and 1, words and long words signed.
     #[track_caller]
-    pub fn get(&self, address: &str) -> i64 {
+    pub(crate) fn get(&self, address: &str) -> i64 {
         match self.machine.get(&Address::parse(address).expect(address)).expect(address) {
             Value::Bit(on) => on.into(),
             Value::Word(word) => word.into(),
@@ -88,7 +88,7 @@ impl Bench {
     }
 
     /// Code of the fault the machine stopped with.
-    pub fn fault(&self) -> Option<u16> {
+    pub(crate) fn fault(&self) -> Option<u16> {
         self.machine.fault().map(|fault| fault.code)
     }
 }

@@ -5,7 +5,7 @@ use ladder::{DataFile, Family, FileType, Image};
 use proptest::prelude::*;
 
 /// The data files of every random program: type, number, elements.
-pub const FILES: [(FileType, u16, u16); 9] = [
+pub(crate) const FILES: [(FileType, u16, u16); 9] = [
     (FileType::O, 0, 1),
     (FileType::I, 1, 1),
     (FileType::S, 2, 66),
@@ -19,18 +19,18 @@ pub const FILES: [(FileType, u16, u16); 9] = [
 
 /// A random program with its data and inputs.
 #[derive(Clone, Debug)]
-pub struct Plan {
-    pub family: Family,
-    pub main: Vec<u64>,
-    pub subroutine: Vec<u64>,
-    pub seed: u64,
-    pub scans: usize,
+pub(crate) struct Plan {
+    pub(crate) family: Family,
+    pub(crate) main: Vec<u64>,
+    pub(crate) subroutine: Vec<u64>,
+    pub(crate) seed: u64,
+    pub(crate) scans: usize,
     /// The program clears the overflow trap in its last rung.
-    pub forgiving: bool,
+    pub(crate) forgiving: bool,
 }
 
 impl Plan {
-    pub fn any() -> impl Strategy<Value = Plan> {
+    pub(crate) fn any() -> impl Strategy<Value = Plan> {
         let families = [
             Family::Slc501,
             Family::Slc502,
@@ -57,7 +57,7 @@ impl Plan {
             })
     }
 
-    pub fn data(&self) -> Dice {
+    pub(crate) fn data(&self) -> Dice {
         Dice(self.seed | 1)
     }
 
@@ -72,7 +72,7 @@ impl Plan {
         text
     }
 
-    pub fn files(&self) -> Vec<(u16, String)> {
+    pub(crate) fn files(&self) -> Vec<(u16, String)> {
         let mut main = self.file(&self.main, false);
         if self.forgiving {
             main.push_str("OTU S:5/0\nOTU S:5/2\n");
@@ -80,12 +80,12 @@ impl Plan {
         vec![(2, main), (3, self.file(&self.subroutine, true))]
     }
 
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let files = self.files().into_iter().map(|(number, text)| format!("file {number}\n{text}"));
         format!("{}\n{}", self.family, files.collect::<String>())
     }
 
-    pub fn image(&self) -> Image {
+    pub(crate) fn image(&self) -> Image {
         let files = self.files().into_iter().map(|(number, text)| {
             let rungs = convert::slc::rung::parse_rungs(&text, Some(self.family));
             (number, rungs.unwrap_or_else(|errors| panic!("{errors:?}\n{text}")))
@@ -98,7 +98,7 @@ impl Plan {
 }
 
 /// xorshift64*: the same numbers on every machine.
-pub struct Dice(pub u64);
+pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
     fn next(&mut self) -> u64 {
@@ -108,7 +108,7 @@ impl Dice {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
     }
 
-    pub fn any(&mut self) -> u16 {
+    pub(crate) fn any(&mut self) -> u16 {
         self.next() as u16
     }
 
@@ -117,9 +117,9 @@ impl Dice {
     }
 
     /// A word that suits a place: mostly small, sometimes at the limits.
-    pub fn word(&mut self, file_type: FileType, index: usize) -> u16 {
+    pub(crate) fn word(&mut self, file_type: FileType, index: usize) -> u16 {
         match (file_type, index % 3) {
-            (FileType::T, 0) => (self.any() & 0xE000) | 0,
+            (FileType::T, 0) => self.any() & 0xE000,
             (FileType::T, _) => (self.below(60)) as u16,
             (FileType::C, 0) => self.any() & 0xF800,
             (FileType::R, 0) => self.any() & 0xFF00,
