@@ -53,7 +53,7 @@ pub struct Image {
     pub io: IoConfiguration,
     /// Communication channels.
     pub channels: Vec<Channel>,
-    /// Memory figures of the last verify.
+    /// Memory figures of the last verify; not those of the program while [`Image::is_edited`].
     pub memory: Option<Memory>,
     /// Symbols, descriptions, comments. The online image has none of its own.
     pub documentation: Documentation,
@@ -119,6 +119,11 @@ impl ProgramFileKind {
 }
 
 impl Image {
+    /// A rung waits to be verified. RSLogix prints `*` for the memory figures then.
+    pub fn is_edited(&self) -> bool {
+        self.program_files.iter().flat_map(|file| &file.rungs).any(|rung| rung.edited)
+    }
+
     /// The processor family.
     pub fn family(&self) -> Family {
         self.processor.family

@@ -18,18 +18,14 @@ pub(crate) fn processor(pair: &Pair<'_>) -> Outcome {
     outcome
 }
 
-/// Words used and left. RSLogix prints `*` while rungs wait to be verified; then there is nothing to compare.
+/// Words used and left. RSLogix prints `*` for them exactly while a rung waits to be verified.
 pub(crate) fn memory(pair: &Pair<'_>) -> Outcome {
     let mut outcome = Outcome::default();
     let Some(printed) = &pair.report.printout.processor else { return outcome };
-    let read = pair.image.memory;
-    if printed.left.is_some() {
-        outcome.row("instruction words left", printed.left, read.map(|m| m.instruction_words_left));
-    }
-    if printed.used.is_some() {
-        let used = read.and_then(|m| Some((m.instruction_words_used, m.data_words_used?)));
-        outcome.row("words used", printed.used, used);
-    }
+    let read = pair.image.memory.filter(|_| !pair.image.is_edited());
+    outcome.row("instruction words left", printed.left, read.map(|m| m.instruction_words_left));
+    let used = read.and_then(|m| Some((m.instruction_words_used, m.data_words_used?)));
+    outcome.row("words used", printed.used, used);
     outcome
 }
 
