@@ -1,4 +1,6 @@
 //! Where the real projects and their printouts are, if they are there at all.
+//!
+//! Tests of other packages take this file in by its path, so that the place is told once.
 
 use std::path::{Path, PathBuf};
 
@@ -12,8 +14,10 @@ pub const VARIABLE: &str = "RUNGS_CORPUS";
 #[must_use]
 pub fn root() -> Option<PathBuf> {
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
-    let path = named
-        .unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join("..").join("shared").join("corpus"));
+    // Packages lie at different depths; the lock file is where the workspace begins.
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let workspace = manifest.ancestors().find(|folder| folder.join("Cargo.lock").is_file()).unwrap_or(manifest);
+    let path = named.unwrap_or_else(|| workspace.join("..").join("shared").join("corpus"));
     if path.is_dir() {
         return Some(path);
     }

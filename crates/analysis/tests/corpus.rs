@@ -2,32 +2,15 @@
 //!
 //! The projects are no part of this repository: without them each test says so and passes.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use analysis::{CallGraph, Coverage, CrossReference, FindingKind, Target, TimerReport, Usage};
 use ladder::{Project, Source, TimeBase};
 use rss::Mode;
 
-fn root() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus");
-    let root = std::env::var_os("RUNGS_CORPUS").map_or_else(beside, PathBuf::from);
-    if root.is_dir() {
-        return Some(root);
-    }
-    println!("skipped: corpus not present");
-    None
-}
-
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    for path in entries.map(|entry| entry.path()) {
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 fn read(path: &Path) -> Option<Project> {
     let bytes = std::fs::read(path).ok()?;
@@ -36,8 +19,7 @@ fn read(path: &Path) -> Option<Project> {
 }
 
 fn lanlogix() -> Option<Project> {
-    let mut all = Vec::new();
-    files(&root()?, &mut all);
+    let all = corpus::files(&corpus::root()?, ".rss").expect("the corpus can be listed");
     let path = all.into_iter().find(|path| path.file_name().is_some_and(|name| name == "LANLOGIX_BR.RSS"))?;
     Some(read(&path).expect("a readable project"))
 }
@@ -106,9 +88,8 @@ fn calls_of_a_large_program() {
 
 #[test]
 fn every_project_can_be_analysed() {
-    let Some(root) = root() else { return };
-    let mut paths = Vec::new();
-    files(&root, &mut paths);
+    let Some(root) = corpus::root() else { return };
+    let paths = corpus::files(&root, ".rss").expect("the corpus can be listed");
     let (mut read_in, mut accesses, mut unknown) = (0, 0, 0);
     for path in &paths {
         let Some(project) = read(path) else { continue };

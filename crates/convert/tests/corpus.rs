@@ -1,32 +1,13 @@
 //! Every project of the corpus through the model: code against texts, known counts.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use convert::{from_rss, verify};
 use ladder::{ProgramFileKind, Source};
 
-/// The corpus folder, or `None` with a line that says so.
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: corpus not present");
-    None
-}
-
-fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            projects(&path, found);
-        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 fn read(path: &Path) -> Option<rss::Project> {
     rss::Project::read(&std::fs::read(path).expect("file"), rss::Mode::Permissive).ok()
@@ -34,9 +15,8 @@ fn read(path: &Path) -> Option<rss::Project> {
 
 #[test]
 fn compiled_code_is_what_the_operand_texts_compile_to() {
-    let Some(folder) = corpus() else { return };
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
     let (mut agrees, mut not_compiled, mut differs) = (0, 0, Vec::new());
     for path in &files {
         let Some(project) = read(path) else { continue };
@@ -59,7 +39,7 @@ fn compiled_code_is_what_the_operand_texts_compile_to() {
 
 #[test]
 fn counts_of_a_large_program() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = corpus::root() else { return };
     let project = read(&folder.join("acd/LANLOGIX_BR.RSS")).expect("a project");
     let project = from_rss::project(&project, Source::default());
     for image in [Some(&project.main), project.online.as_ref()].into_iter().flatten() {
@@ -82,9 +62,8 @@ fn counts_of_a_large_program() {
 
 #[test]
 fn operands_are_spelled_as_stored() {
-    let Some(folder) = corpus() else { return };
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
     let mut texts = std::collections::BTreeMap::<String, String>::new();
     let mut seen = 0;
     for project in files.iter().filter_map(|path| read(path)) {
@@ -114,9 +93,8 @@ fn operands_are_spelled_as_stored() {
 
 #[test]
 fn a_project_written_from_the_model_reads_back_equal() {
-    let Some(folder) = corpus() else { return };
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
     let mut written = 0;
     for path in &files {
         let Some(project) = read(path) else { continue };

@@ -1,6 +1,6 @@
 //! Every project of the corpus as JSON: valid under the schema, and the same model when read back.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use convert::from_rss;
@@ -8,28 +8,9 @@ use convert::json::{from_json, to_json_text};
 use ladder::{Project, Source};
 use serde_json::Value;
 
-/// The corpus folder, or `None` with a line that says so.
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: corpus not present");
-    None
-}
-
-fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            projects(&path, found);
-        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 fn read(path: &Path) -> Option<Project> {
     let bytes = std::fs::read(path).expect("file");
@@ -69,12 +50,11 @@ fn difference(name: &str, a: &Project, b: &Project) -> String {
 
 #[test]
 fn real_projects_are_valid_and_come_back() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = corpus::root() else { return };
     let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/schema/rungs.project-1.schema.json");
     let schema: Value = serde_json::from_str(&std::fs::read_to_string(schema).expect("schema")).expect("JSON");
     let schema = jsonschema::draft202012::new(&schema).expect("the schema compiles");
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
     let (mut read_count, mut rungs, mut structures, mut bytes) = (0, 0, 0, 0);
     let mut slowest = (Duration::ZERO, String::new());
     let mut wrong = Vec::new();

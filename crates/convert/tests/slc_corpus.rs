@@ -1,6 +1,6 @@
 //! Every project of the corpus through SLC text: the same rungs, data words, forces and comments.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use convert::slc::file::read;
 use convert::slc::project::{export, project};
@@ -8,25 +8,13 @@ use convert::slc::rung::{parse_rung, rung_text, rung_text_for};
 use convert::{from_rss, slc};
 use ladder::{Family, FileType, Image, Project, Rung, Severity, Source};
 
-mod slc_support;
-use slc_support::corpus;
-
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 /// Every readable project, with its file name.
 fn projects(folder: &Path) -> impl Iterator<Item = (String, Project)> {
-    let mut found = Vec::new();
-    files(folder, &mut found);
+    let found = corpus::files(folder, ".rss").expect("the corpus can be listed");
     found.into_iter().filter_map(|path| {
         let bytes = std::fs::read(&path).expect("file");
         let file = rss::Project::read(&bytes, rss::Mode::Permissive).ok()?;
@@ -59,7 +47,7 @@ fn same_text_logic(a: &Rung, b: &Rung) -> bool {
 
 #[test]
 fn every_rung_comes_back_from_its_text() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = corpus::root() else { return };
     let (mut rungs, mut instructions, mut grouped, mut wrong) = (0, 0, 0, Vec::new());
     for (name, project) in projects(&folder) {
         for image in images(&project) {
@@ -92,7 +80,7 @@ fn every_rung_comes_back_from_its_text() {
 
 #[test]
 fn every_image_comes_back_from_its_text_file() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = corpus::root() else { return };
     let (mut count, mut words, mut comments) = (0, 0, 0);
     for (name, original) in projects(&folder) {
         for image in images(&original) {
@@ -144,7 +132,7 @@ fn every_image_comes_back_from_its_text_file() {
 /// the same ones, in the same order, of the same size.
 #[test]
 fn function_files_are_those_the_vendors_text_names() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = corpus::root() else { return };
     let text = std::fs::read_to_string(folder.join("RsLogix500Helper/59-BSGS.SLC")).expect("the file");
     // A file without elements does not show how large they are.
     let sizes = |image: &Image| {

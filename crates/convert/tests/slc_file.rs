@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 use convert::slc::file::{Data, Ladder, Section, SlcFile, TitleBlock, read};
 use proptest::prelude::*;
 
-mod slc_support;
-use slc_support::corpus;
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 /// A file of our own in the layout RSLogix writes.
 const SAMPLE: &str = "\
@@ -176,7 +177,7 @@ no mask
 
 #[test]
 fn the_vendors_own_file_comes_back_byte_for_byte() {
-    let Some(root) = corpus() else { return };
+    let Some(root) = corpus::root() else { return };
     let text = std::fs::read_to_string(root.join("RsLogix500Helper/59-BSGS.SLC")).expect("the file");
     let file = read(&text);
     assert_eq!(file.diagnostics, []);

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use instr::{Form, Kind, by_opcode};
 use ladder::{Family, FileType, Operand, Place};
@@ -31,16 +30,9 @@ impl Tally {
     }
 }
 
-fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            projects(&path, found);
-        } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 /// What may stand as an operand of this kind, by spelling.
 fn fits(kind: Kind, text: &str) -> bool {
@@ -194,15 +186,8 @@ fn family_of(model: u16) -> Family {
 
 #[test]
 fn stored_programs_agree_with_the_table() {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    let mut paths = Vec::new();
-    projects(&folder, &mut paths);
-    if paths.is_empty() {
-        println!("skipped: corpus not present");
-        return;
-    }
-    paths.sort();
+    let Some(folder) = corpus::root() else { return };
+    let paths = corpus::files(&folder, ".rss").expect("the corpus can be listed");
     let mut tally = Tally::default();
     for path in &paths {
         let bytes = fs::read(path).expect("a listed project is readable");

@@ -15,7 +15,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use instr::{Drawing, Form, Instruction, Names, Stored, all, by_mnemonic};
 
@@ -155,28 +154,14 @@ fn check_report(name: &str, text: &str, tally: &mut Tally) {
     }
 }
 
-fn reports(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let path = entry.path();
-        if path.is_dir() {
-            reports(&path, found);
-        } else if path.to_string_lossy().ends_with(".pdf.txt") {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
 
 #[test]
 fn boxes_on_paper_have_our_titles_and_names() {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    let mut paths = Vec::new();
-    reports(&folder, &mut paths);
-    if paths.is_empty() {
-        println!("skipped: corpus not present");
-        return;
-    }
-    paths.sort();
+    let Some(folder) = corpus::root() else { return };
+    let paths = corpus::files(&folder, ".pdf.txt").expect("the corpus can be listed");
     let mut tally = Tally::default();
     for path in &paths {
         let text = String::from_utf8_lossy(&fs::read(path).expect("a listed report is readable")).into_owned();
