@@ -218,6 +218,15 @@ impl Machine {
         if let Some(place) = self.state.mem.get_mut(at) {
             *place = word;
         }
+        // A timer whose flags or ACC are written from outside is taken as it stands, not as one that
+        // was stopped by the last change of mode. PRE, the word between, says nothing about that.
+        let slot_of = |at: usize| self.program.timer_slot(u32::try_from(at).ok()?);
+        let is_preset = |slot: u32| slot_of(at.saturating_sub(1)) == Some(slot) && slot_of(at + 1) == Some(slot);
+        let slot = slot_of(at).filter(|slot| !is_preset(*slot));
+        if let Some(timer) = slot.and_then(|slot| self.state.timers.get_mut(slot as usize)) {
+            timer.fresh = false;
+            timer.last = self.state.now;
+        }
         let (first, count) = self.program.inputs;
         if (first..first + count).contains(&at)
             && let Some(terminal) = self.state.inputs.get_mut(at - first)
