@@ -425,6 +425,12 @@ pub fn slc_module(id: u16) -> Option<&'static ModuleName> {
     SLC_MODULES.iter().find(|(known, _)| *known == id).map(|(_, name)| name)
 }
 
+/// Input and output points of a controller whose stored bytes say more than it has: the on-board I/O
+/// of the MicroLogix 1000 with 32 points, which stores 32 input and 16 output bits.
+pub fn onboard_points(id: u16) -> Option<(u16, u16)> {
+    (id == 3199).then_some((20, 12))
+}
+
 /// Bits per second of a serial baud code, with its evidence.
 pub fn baud_rate(code: u8) -> Option<(u32, Evidence)> {
     match code {

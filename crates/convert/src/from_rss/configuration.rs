@@ -53,12 +53,12 @@ pub(crate) fn io(record: &rss::io::IoConfiguration<'_>) -> IoConfiguration {
         inputs: IoRange {
             first_word: slot.words.first_input,
             words: slot.words.input_words,
-            bits: points(slot.words.input_points()),
+            bits: points(slot.words.input_points()).min(existing(&slot.module).0),
         },
         outputs: IoRange {
             first_word: slot.words.first_output,
             words: slot.words.output_words,
-            bits: points(slot.words.output_points()),
+            bits: points(slot.words.output_points()).min(existing(&slot.module).1),
         },
         configuration: configuration(slot.slot),
     });
@@ -71,6 +71,14 @@ pub(crate) fn io(record: &rss::io::IoConfiguration<'_>) -> IoConfiguration {
                 record.model.0
             )
         }),
+    }
+}
+
+/// Inputs and outputs that a module has at most.
+fn existing(module: &SlotModule) -> (u16, u16) {
+    match module {
+        SlotModule::IdCode(code) => tables::onboard_points(*code).unwrap_or((u16::MAX, u16::MAX)),
+        _ => (u16::MAX, u16::MAX),
     }
 }
 
