@@ -1,0 +1,201 @@
+//! The properties: reading any bytes ends, and what was read without complaint is written the same.
+
+use std::io;
+
+use analysis::{CallGraph, Coverage, CrossReference, TimerReport};
+use convert::slc::{self, rung};
+use ladder::{Documentation, Family, Image, Source};
+use rss::{ImageKind, Mode, Parsed, Record, StreamKind};
+
+use crate::seed::EXAMPLES;
+
+const STREAM: &str = "STREAM/ObjectData";
+
+/// A whole file: it is read, accounted for and written, and comes back if nothing deviates.
+pub fn container(bytes: &[u8]) {
+    let _ = rss::identify(bytes);
+    let strict = rss::Project::read(bytes, Mode::Strict);
+    let project = match rss::Project::read(bytes, Mode::Permissive) {
+        Ok(project) => project,
+        Err(error) => {
+            placed(&error, usize::MAX);
+            assert_eq!(strict.err(), Some(error));
+            return;
+        }
+    };
+    let sound = project.deviations().next().is_none();
+    assert_eq!(strict.is_ok(), sound);
+    let account = rss::verify::verify(&project);
+    for stream in &account.streams {
+        assert!(stream.understood <= stream.bytes, "{}", stream.stream);
+        let silent = stream.error.is_none() && stream.deviations.is_empty();
+        assert!(stream.identical || !silent, "{} differs without a word", stream.stream);
+    }
+    let identical = account.streams.iter().all(|stream| stream.identical);
+    assert!(account.roundtrip || !sound || !identical, "a sound project does not come back");
+}
+
+/// A payload as one record.
+pub fn record<'a, R: Record<'a>>(bytes: &'a [u8]) -> Parsed<R> {
+    let parsed = rss::parse::<R>(bytes, STREAM, Mode::Permissive);
+    assert!(parsed.understood <= bytes.len());
+    if let Some(error) = &parsed.error {
+        placed(error, bytes.len());
+    }
+    let silent = parsed.error.is_none() && parsed.deviations.is_empty();
+    if silent {
+        assert_eq!(rss::serialize(&parsed.value).as_deref(), Ok(bytes));
+    }
+    let strict = rss::parse::<R>(bytes, STREAM, Mode::Strict);
+    assert_eq!(strict.error.is_none(), silent, "{:?}", strict.error);
+    parsed
+}
+
+/// An error says where, and the place is in the bytes.
+fn placed(error: &rss::Error, end: usize) {
+    match error.deviation() {
+        Some(deviation) => assert!(deviation.offset <= end, "{error}"),
+        None => assert!(matches!(error, rss::Error::Foreign(_)), "{error}"),
+    }
+}
+
+/// The property set of a project.
+pub fn summary(bytes: &[u8]) {
+    match rss::summary::Summary::read(bytes) {
+        Ok(summary) => {
+            assert_eq!(summary.as_bytes(), bytes);
+            let _ = summary.instruction_words();
+            for id in 0..40 {
+                let _ = (summary.number(id), summary.text(id), summary.time(id));
+            }
+        }
+        Err(error) => placed(&error, bytes.len()),
+    }
+}
+
+/// Compiled code: decoding accepts only what encoding gives back.
+pub fn compiled_code(bytes: &[u8]) {
+    match rss::code::Code::decode(bytes) {
+        Ok(code) => {
+            assert_eq!(code.encode().as_deref(), Ok(bytes));
+            if let rss::code::Code::Operands { operands, .. } = &code {
+                operands.iter().for_each(|operand| drop(convert::code::spell(operand)));
+            }
+        }
+        Err(error) => assert!(error.offset <= bytes.len(), "{error}"),
+    }
+}
+
+/// A sound project with one stream replaced: whatever it becomes is shown, analysed and exported. The
+/// first byte chooses the stream, the second the image.
+pub fn model(bytes: &[u8]) {
+    let (Some((&[kind, image], payload)), Some(base)) = (bytes.split_first_chunk::<2>(), EXAMPLES.first()) else {
+        return;
+    };
+    let kind = StreamKind::NAMED[usize::from(kind) % StreamKind::NAMED.len()];
+    let image = ImageKind::ALL[usize::from(image) % ImageKind::ALL.len()];
+    let mut file = base.clone();
+    file.set_payload(image, kind, payload).expect("any payload can be stored");
+    let project = convert::from_rss::project(&file, Source::default());
+    let _ = convert::verify::check_code(&file);
+    let documentation = &project.main.documentation;
+    for image in [Some(&project.main), project.online.as_ref(), project.autosave.as_ref()].into_iter().flatten() {
+        look(image, documentation);
+    }
+    settles_as_json(&project);
+    write(&project);
+}
+
+/// What a person can ask about an image.
+fn look(image: &Image, documentation: &Documentation) {
+    let xref = CrossReference::build(image, documentation);
+    let _ = (xref.findings(), Coverage::build(image, documentation, &xref));
+    let _ = CallGraph::build(image, documentation);
+    let _ = analysis::csv::xref(&xref, io::sink());
+    let _ = analysis::csv::timers(&TimerReport::build(image, &xref), io::sink());
+    let style = render::Style::default();
+    for file in image.ladder_files() {
+        let _ = render::program_file(&mut io::sink(), image, file, None, documentation, &style);
+        for rung in &file.rungs {
+            settles_as_text(rung, Some(image.family()));
+        }
+    }
+    let _ = convert::csv::write_symbols(documentation, io::sink());
+    let _ = slc::project::read(&slc::project::export(image).file.write());
+}
+
+/// A rung written as text reads back as the same rung.
+fn settles_as_text(rung: &ladder::Rung, family: Option<Family>) {
+    let text = rung::rung_text_for(rung, family);
+    let again = rung::parse_rung(&text, family).unwrap_or_else(|error| panic!("{text}: {error}"));
+    assert!(again.same_logic(rung), "{text}\n{again:?}\n{rung:?}");
+    assert_eq!(rung::rung_text_for(&again, family), text);
+}
+
+/// A project written as JSON reads back, and is then written the same.
+fn settles_as_json(project: &ladder::Project) {
+    let text = convert::json::to_json_text(project);
+    let again = convert::json::from_json(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    assert_eq!(convert::json::to_json_text(&again), text);
+}
+
+/// A project file made of a model reads back without complaint; or the model cannot be stored.
+fn write(project: &ladder::Project) {
+    if let Ok(built) = convert::to_rss::project_file(project) {
+        let bytes = built.file.write().expect("a file within bounds");
+        let back = rss::Project::read(&bytes, Mode::Strict).expect("a sound project");
+        assert!(rss::verify::verify(&back).roundtrip);
+        drop(convert::from_rss::project(&back, Source::default()));
+    }
+}
+
+/// Text as rungs and as a whole file.
+pub fn slc_text(bytes: &[u8]) {
+    let text = slc::decode(bytes);
+    for family in [None, Some(Family::MicroLogix1400)] {
+        for rung in rung::parse_rungs(&text, family).into_iter().flatten() {
+            settles_as_text(&rung, family);
+        }
+    }
+    let lines =
+        |text: &str| text.lines().map(str::trim).filter(|line| !line.is_empty()).map(str::to_owned).collect::<Vec<_>>();
+    let first = slc::file::read(&text).write();
+    let second = slc::file::read(&first).write();
+    assert_eq!(lines(&second), lines(&first));
+    assert_eq!(slc::file::read(&second).write(), second);
+    if let Ok(project) = slc::project::read(&text) {
+        look(&project.main, &project.main.documentation);
+        settles_as_json(&project);
+        write(&project);
+    }
+}
+
+/// A JSON document.
+pub fn json(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(project) = convert::json::from_json(text) {
+        look(&project.main, &project.main.documentation);
+        settles_as_json(&project);
+        write(&project);
+    }
+}
+
+/// A table of symbols: what is read is written and reads back the same.
+pub fn csv(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let read = |text: &str| {
+        let mut image = Image::default();
+        convert::csv::read_symbols(text, &mut image).map(|()| image)
+    };
+    let write = |image: &Image| {
+        let mut bytes = Vec::new();
+        convert::csv::write_symbols(&image.documentation, &mut bytes).expect("memory takes all");
+        String::from_utf8(bytes).expect("UTF-8")
+    };
+    if let Ok(image) = read(text) {
+        // Line ends inside a description settle in the first step.
+        let settle = |text: &str| write(&read(text).unwrap_or_else(|error| panic!("{error:?}\n{text}")));
+        let first = settle(&write(&image));
+        assert_eq!(settle(&first), first);
+    }
+}
