@@ -18,11 +18,10 @@ pub(crate) enum Op {
     BranchStart,
     NextLeg,
     BranchEnd,
-    Xic {
-        mask: u16,
-        word: u32,
-    },
-    Xio {
+    /// XIC, and XIO with `invert` all ones: passes power while a bit of the mask is on after the
+    /// exclusive or.
+    Contact {
+        invert: u16,
         mask: u16,
         word: u32,
     },

@@ -88,8 +88,8 @@ impl Compiler<'_> {
             _ => {}
         }
         match (name, bit) {
-            ("XIC", BitAt::Direct { mask, word }) => self.push(Op::Xic { mask, word }),
-            ("XIO", BitAt::Direct { mask, word }) => self.push(Op::Xio { mask, word }),
+            ("XIC", BitAt::Direct { mask, word }) => self.push(Op::Contact { invert: 0, mask, word }),
+            ("XIO", BitAt::Direct { mask, word }) => self.push(Op::Contact { invert: 0xFFFF, mask, word }),
             ("OTE", BitAt::Direct { mask, word }) => self.push(Op::Ote { mask, word }),
             ("OTL", BitAt::Direct { mask, word }) => self.push(Op::Otl { mask, word }),
             ("OTU", BitAt::Direct { mask, word }) => self.push(Op::Otu { mask, word }),

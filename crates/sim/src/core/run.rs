@@ -54,10 +54,75 @@ impl Watch for &mut dyn Trace {
 #[derive(Clone, Copy, Default)]
 struct Frame {
     position: usize,
-    power: bool,
     zone: bool,
+    flow: Flow,
+}
+
+/// Power in a rung. One bit per open branch: power where it began, and what its finished legs passed on.
+#[derive(Clone, Copy, Default)]
+struct Flow {
+    power: bool,
     saved: u64,
     joined: u64,
+}
+
+impl Flow {
+    /// Executes an operation on words alone; `false`: it is another one.
+    #[inline(always)]
+    fn simple(&mut self, op: &Op, words: &mut [u16]) -> bool {
+        let read = |words: &[u16], at: u32| words.get(at as usize).copied().unwrap_or(0);
+        match *op {
+            Op::Contact { invert, mask, word } => self.power &= (read(words, word) ^ invert) & mask != 0,
+            Op::BranchStart => {
+                self.saved = self.saved << 1 | u64::from(self.power);
+                self.joined <<= 1;
+            }
+            Op::NextLeg => {
+                self.joined |= u64::from(self.power);
+                self.power = self.saved & 1 != 0;
+            }
+            Op::BranchEnd => {
+                self.power |= self.joined & 1 != 0;
+                self.saved >>= 1;
+                self.joined >>= 1;
+            }
+            Op::Ote { mask, word } => {
+                if let Some(word) = words.get_mut(word as usize) {
+                    let on = if self.power { mask } else { 0 };
+                    *word = *word & !mask | on;
+                }
+            }
+            Op::Otl { mask, word } => {
+                if let Some(word) = words.get_mut(word as usize) {
+                    *word |= if self.power { mask } else { 0 };
+                }
+            }
+            Op::Otu { mask, word } => {
+                if let Some(word) = words.get_mut(word as usize) {
+                    *word &= !if self.power { mask } else { 0 };
+                }
+            }
+            Op::OneShot { mask, word } => {
+                if let Some(word) = words.get_mut(word as usize) {
+                    let was = *word & mask != 0;
+                    let on = if self.power { mask } else { 0 };
+                    *word = *word & !mask | on;
+                    self.power &= !was;
+                }
+            }
+            Op::CompareWords { relation, a, b } => {
+                self.power &= relation.holds(read(words, a) as i16, read(words, b) as i16);
+            }
+            Op::CompareConstant { relation, value, a } => {
+                self.power &= relation.holds(read(words, a) as i16, value);
+            }
+            // Without power there is nothing to evaluate.
+            Op::Test(_) | Op::Do(_) => return !self.power,
+            Op::Marker => {}
+            _ => return false,
+        }
+        true
+    }
 }
 
 const LEVELS: usize = 8;
@@ -66,6 +131,7 @@ impl Core<'_> {
     /// Runs a file from `entry` until it ends.
     pub(crate) fn run<W: Watch>(&mut self, entry: u32, context: Context, watch: &mut W) -> Ending {
         let program = self.p;
+        let ops = program.ops.as_slice();
         let levels = match context {
             Context::Main => program.traits.levels,
             _ => program.traits.interrupt_levels,
@@ -75,16 +141,29 @@ impl Core<'_> {
         let mut at = entry as usize;
         // Instructions are counted by stretches between transfers of control.
         let mut counted_from = at;
-        let (mut power, mut zone) = (true, true);
-        // One bit per open branch: power where it began, and what its finished legs passed on.
-        let (mut saved, mut joined) = (0u64, 0u64);
+        let mut zone = true;
+        let mut flow = Flow { power: true, saved: 0, joined: 0 };
         loop {
-            let Some(op) = program.ops.get(at) else { return Ending::End };
-            let before = power;
+            if !W::ON {
+                // Most of a program: a tight loop over operations that need nothing but words.
+                let words = self.s.mem.as_mut_slice();
+                let due = self.s.due;
+                while let Some(op) = ops.get(at) {
+                    match op {
+                        Op::Rung if !due => flow.power = zone,
+                        op if flow.simple(op, words) => {}
+                        _ => break,
+                    }
+                    at += 1;
+                }
+            }
+            let Some(op) = ops.get(at) else { return Ending::End };
+            let before = flow.power;
             let mut failed = None;
             match *op {
+                _ if flow.simple(op, &mut self.s.mem) => {}
                 Op::Rung => {
-                    power = zone;
+                    flow.power = zone;
                     if self.s.due && context == Context::Main {
                         self.s.due = false;
                         self.events(watch);
@@ -94,82 +173,46 @@ impl Core<'_> {
                         }
                     }
                 }
-                Op::BranchStart => {
-                    saved = saved << 1 | u64::from(power);
-                    joined <<= 1;
-                }
-                Op::NextLeg => {
-                    joined |= u64::from(power);
-                    power = saved & 1 != 0;
-                }
-                Op::BranchEnd => {
-                    power |= joined & 1 != 0;
-                    saved >>= 1;
-                    joined >>= 1;
-                }
-                Op::Xic { mask, word } => power &= self.word(word) & mask != 0,
-                Op::Xio { mask, word } => power &= self.word(word) & mask == 0,
-                Op::Ote { mask, word } => self.put_bits(word, mask, power),
-                Op::Otl { mask, word } => {
-                    if power {
-                        self.put_bits(word, mask, true);
-                    }
-                }
-                Op::Otu { mask, word } => {
-                    if power {
-                        self.put_bits(word, mask, false);
-                    }
-                }
-                Op::OneShot { mask, word } => {
-                    let was = self.word(word) & mask != 0;
-                    self.put_bits(word, mask, power);
-                    power &= !was;
-                }
-                Op::CompareWords { relation, a, b } => {
-                    power &= relation.holds(self.word(a) as i16, self.word(b) as i16);
-                }
-                Op::CompareConstant { relation, value, a } => {
-                    power &= relation.holds(self.word(a) as i16, value);
-                }
                 Op::Timer { kind, base, word, slot } => {
-                    if let Err(code) = self.timer(kind, base, word, slot, power) {
+                    if let Err(code) = self.timer(kind, base, word, slot, flow.power) {
                         failed = Some(code);
                     }
                 }
-                Op::Counter { down, word } => self.counter(down, word, power),
+                Op::Counter { down, word } => self.counter(down, word, flow.power),
                 Op::Test(block) => {
-                    if power {
+                    if flow.power {
                         match self.test(block) {
-                            Ok(passed) => power = passed,
+                            Ok(passed) => flow.power = passed,
                             Err(code) => {
-                                power = false;
+                                flow.power = false;
                                 failed = Some(code);
                             }
                         }
                     }
                 }
                 Op::Do(block) => {
-                    if power && let Err(code) = self.act(block, true, context) {
+                    if flow.power
+                        && let Err(code) = self.act(block, true, context)
+                    {
                         failed = Some(code);
                     }
                 }
-                Op::Always(block) => match self.one_shot_block(block, power) {
+                Op::Always(block) => match self.one_shot_block(block, flow.power) {
                     Some(result) => match result {
-                        Ok(passed) => power = passed,
+                        Ok(passed) => flow.power = passed,
                         Err(code) => failed = Some(code),
                     },
                     None => {
-                        if let Err(code) = self.act(block, power, context) {
+                        if let Err(code) = self.act(block, flow.power, context) {
                             failed = Some(code);
                         }
                     }
                 },
-                Op::Marker => {}
-                Op::Mcr => zone = if zone { power } else { true },
+                Op::Mcr => zone = if zone { flow.power } else { true },
                 Op::Jump(target) => {
-                    if power {
+                    if flow.power {
                         if W::ON {
-                            self.watch(watch, at, before, power);
+                            self.watch(watch, at, before, flow.power);
                         }
                         self.count(counted_from, at + 1);
                         if self.s.executed > self.s.limit {
@@ -183,7 +226,7 @@ impl Core<'_> {
                     }
                 }
                 Op::Call(file) => {
-                    if power {
+                    if flow.power {
                         self.count(counted_from, at + 1);
                         counted_from = at + 1;
                         match program.entry(file as u16) {
@@ -192,10 +235,10 @@ impl Core<'_> {
                             None => failed = Some(code::UNSUPPORTED),
                             Some(start) => {
                                 if W::ON {
-                                    self.watch(watch, at, before, power);
+                                    self.watch(watch, at, before, flow.power);
                                 }
                                 if let Some(frame) = frames.get_mut(depth) {
-                                    *frame = Frame { position: at + 1, power, zone, saved, joined };
+                                    *frame = Frame { position: at + 1, zone, flow };
                                 }
                                 depth += 1;
                                 zone = true;
@@ -208,17 +251,16 @@ impl Core<'_> {
                 }
                 Op::Return | Op::End => {
                     let is_end = matches!(op, Op::End);
-                    if is_end || power {
+                    if is_end || flow.power {
                         if W::ON {
-                            self.watch(watch, at, before, power);
+                            self.watch(watch, at, before, flow.power);
                         }
                         self.count(counted_from, at + 1);
                         counted_from = at + 1;
                         if depth > 0 {
                             depth -= 1;
                             let frame = frames.get(depth).copied().unwrap_or_default();
-                            (at, power, zone) = (frame.position, frame.power, frame.zone);
-                            (saved, joined) = (frame.saved, frame.joined);
+                            (at, zone, flow) = (frame.position, frame.zone, frame.flow);
                             counted_from = at;
                             continue;
                         }
@@ -229,9 +271,9 @@ impl Core<'_> {
                     }
                 }
                 Op::TempEnd => {
-                    if power {
+                    if flow.power {
                         if W::ON {
-                            self.watch(watch, at, before, power);
+                            self.watch(watch, at, before, flow.power);
                         }
                         self.count(counted_from, at + 1);
                         counted_from = at + 1;
@@ -241,8 +283,20 @@ impl Core<'_> {
                         failed = Some(code::IN_INTERRUPT);
                     }
                 }
+                // Executed above.
+                Op::BranchStart
+                | Op::NextLeg
+                | Op::BranchEnd
+                | Op::Contact { .. }
+                | Op::Ote { .. }
+                | Op::Otl { .. }
+                | Op::Otu { .. }
+                | Op::OneShot { .. }
+                | Op::CompareWords { .. }
+                | Op::CompareConstant { .. }
+                | Op::Marker => {}
                 Op::Suspend(number) => {
-                    if power {
+                    if flow.power {
                         self.count(counted_from, at + 1);
                         self.set_status(status::SUSPEND_CODE, number as u16);
                         let file = program.sites.get(at).map_or(0, |site| site.file);
@@ -252,7 +306,7 @@ impl Core<'_> {
                 }
             }
             if W::ON {
-                self.watch(watch, at, before, power);
+                self.watch(watch, at, before, flow.power);
             }
             if let Some(code) = failed {
                 self.count(counted_from, at + 1);
