@@ -135,7 +135,7 @@ fn what_the_text_cannot_hold_is_said() {
     let notes: Vec<String> = export(&image).notes.iter().map(|d| format!("{}: {}", d.place, d.message)).collect();
     for expected in [
         "file 2 > rung 0: not in the text: the settings",
-        "data file ?9912: not",
+        "data file ?99-12: not",
         "symbols and descriptions of addresses (1)",
     ] {
         assert!(notes.iter().any(|note| note.contains(expected)), "{expected}: {notes:#?}");
