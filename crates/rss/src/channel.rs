@@ -196,15 +196,15 @@ const ETHERNET_BYTES: usize = 106;
 /// General settings of a channel (word numbers of the format page in brackets).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct General {
-    /// Edit resource / owner timeout, seconds [3] (printed).
+    /// Edit resource / owner timeout, seconds (word 3) (printed).
     pub owner_timeout: u16,
-    /// Passthru link ID [4] (printed).
+    /// Passthru link ID (word 4) (printed).
     pub passthru_link_id: u16,
-    /// Service selections [5]: bits 0 and 1 comms and message servicing (inferred), bit 8 unknown.
+    /// Service selections (word 5): bits 0 and 1 comms and message servicing (inferred), bit 8 unknown.
     pub services: u16,
-    /// First AWA append character, low byte of [9] (printed).
+    /// First AWA append character, low byte of (word 9) (printed).
     pub append_1: u8,
-    /// Second AWA append character, high byte of [9] (printed).
+    /// Second AWA append character, high byte of (word 9) (printed).
     pub append_2: u8,
     /// Equal to a record beside a printout but for the fields above: settings without a known place
     /// have the values of [`crate::tables::GENERAL_AS_PRINTED`].
@@ -214,19 +214,19 @@ pub struct General {
 /// Serial driver settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Serial {
-    /// Driver code [14]; names in [`crate::tables::serial_driver`].
+    /// Driver code (word 14); names in [`crate::tables::serial_driver`].
     pub driver: u16,
-    /// Driver options [15] (inferred).
+    /// Driver options (word 15) (inferred).
     pub options: u16,
-    /// Source ID, node address [17] (printed).
+    /// Source ID, node address (word 17) (printed).
     pub source_id: u16,
-    /// NAK and ENQ retries [22], which is which is unknown (values printed).
+    /// NAK and ENQ retries (word 22), which is which is unknown (values printed).
     pub retries: [u8; 2],
-    /// ACK timeout in units of 20 ms [23] (printed).
+    /// ACK timeout in units of 20 ms (word 23) (printed).
     pub ack_timeout: u16,
-    /// Baud code, low byte of [25]; rates in [`crate::tables::baud_rate`].
+    /// Baud code, low byte of (word 25); rates in [`crate::tables::baud_rate`].
     pub baud: u8,
-    /// Line options, high byte of [25] (inferred).
+    /// Line options, high byte of (word 25) (inferred).
     pub line_options: u8,
     /// Equal to a record of the same driver beside a printout but for the fields above: settings
     /// without a known place have the values of [`crate::tables::serial_as_printed`].
@@ -236,23 +236,23 @@ pub struct Serial {
 /// Ethernet settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ethernet {
-    /// Message connection timeout, ms [16] (printed).
+    /// Message connection timeout, ms (word 16) (printed).
     pub connection_timeout: u16,
-    /// Message reply timeout, ms [17] (printed).
+    /// Message reply timeout, ms (word 17) (printed).
     pub reply_timeout: u16,
-    /// Inactivity timeout, minutes [18] (printed).
+    /// Inactivity timeout, minutes (word 18) (printed).
     pub inactivity_timeout: u16,
-    /// IP address [19, 20] (printed).
+    /// IP address (word 19, 20) (printed).
     pub address: Ipv4Addr,
-    /// Subnet mask [21, 22] (printed).
+    /// Subnet mask (word 21, 22) (printed).
     pub mask: Ipv4Addr,
-    /// Gateway [23, 24] (printed).
+    /// Gateway (word 23, 24) (printed).
     pub gateway: Ipv4Addr,
-    /// Primary and secondary name server [27..30] (inferred).
+    /// Primary and secondary name server (word 27..30) (inferred).
     pub name_servers: [Ipv4Addr; 2],
-    /// Protocol switches [63]; see the methods.
+    /// Protocol switches (word 63); see the methods.
     pub protocols: u16,
-    /// Port speed mask [66] (inferred).
+    /// Port speed mask (word 66) (inferred).
     pub port_speed: u16,
     /// Equal to a record beside a printout but for the fields above: settings without a known place
     /// have the values of [`crate::tables::ETHERNET_AS_PRINTED`].

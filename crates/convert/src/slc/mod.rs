@@ -1,7 +1,7 @@
 //! RSLogix 500's text forms: rungs as text, and whole `.SLC` project files.
 //!
 //! * [`rung`]: one rung between text and model.
-//! * [`file`]: an `.SLC` file as sections of typed lines, read and written; knows no instruction.
+//! * [`mod@file`]: an `.SLC` file as sections of typed lines, read and written; knows no instruction.
 //! * [`project`]: sections to the program model and back, with a list of what such a file cannot hold.
 //! * [`decode`] and [`encode`]: the bytes of such a file.
 //!

@@ -1,7 +1,7 @@
 //! `.SLC` files to the program model and back.
 //!
 //! Such a file holds the program, rung comments and page titles, data tables, forces and the I/O
-//! slots. It has no symbols, no descriptions, no names of data files and no channels: [`export`]
+//! slots. It has no symbols, no descriptions, no names of data files and no channels: [`export()`]
 //! lists what it had to leave out.
 
 mod export;
