@@ -47,8 +47,9 @@ impl Register {
     }
 }
 
-/// What an instruction leaves behind. The math register is to be stored before the value, so that a
-/// destination in S:13 or S:14 ends with the value.
+/// What an instruction leaves behind. The math register is to be stored after the value, so that a
+/// destination in S:13 or S:14 ends with the register: two MicroLogix 1400 programs divide into S:13
+/// and were saved while they ran with the remainder there (seen for DIV).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     /// For the destination; `None`: the destination keeps its value.

@@ -43,8 +43,9 @@ pub struct Line {
 /// (manual, unseen).
 ///
 /// Integer parameters are computed exactly and rounded once; how halves go is open:
-/// [`Choice::ScpTiesToEven`]. With a float among them the line is computed in double precision and
-/// rounded once (open). Without a width, x1 = x0, V is set; what is stored is open:
+/// [`Choice::ScpTiesToEven`]. With a float among them the line is computed in single precision in the
+/// order of the formula: a MicroLogix 1400 saved while it ran holds 0.21000001 for 560 / 16000 × 6,
+/// where the product first, or a higher precision, gives 0.21 (seen once). Without a width, x1 = x0, V is set; what is stored is open:
 /// [`Choice::ScpFlatKeeps`].
 pub fn scp(input: Number, line: Line, to: Width, mode: MathMode) -> Outcome {
     let flat = || {
@@ -69,13 +70,12 @@ pub fn scp(input: Number, line: Line, to: Width, mode: MathMode) -> Outcome {
         let value = i64::try_from(quotient).unwrap_or(if quotient < 0 { i64::MIN } else { i64::MAX });
         return math::integer(value.saturating_add(y0), false, to, mode);
     }
-    let wide = |value: Number| value.integer().map_or_else(|| f64::from(value.float()), |integer| integer as f64);
-    let (x, x0, x1) = (wide(input), wide(line.input_min), wide(line.input_max));
-    let (y0, y1) = (wide(line.scaled_min), wide(line.scaled_max));
+    let [x, x0, x1, y0, y1] =
+        [input, line.input_min, line.input_max, line.scaled_min, line.scaled_max].map(Number::float);
     if x1 == x0 {
         return flat();
     }
-    math::float(((y1 - y0) / (x1 - x0) * (x - x0) + y0) as f32, to, mode)
+    math::float((y1 - y0) / (x1 - x0) * (x - x0) + y0, to, mode)
 }
 
 /// The quotient rounded to the nearest integer; `divisor` is not 0.
@@ -122,6 +122,14 @@ mod tests {
         assert_eq!(words(Lineage::Mx, 1, 5000, 0), (Some(w(1)), Flags::NONE), "half goes up");
         assert_eq!(words(Lineage::Mx, -1, 5000, 0), (Some(w(-1)), Flags::SIGN));
         assert_eq!(words(Lineage::Mx, 1, 4999, 0), (Some(w(0)), Flags::ZERO));
+    }
+
+    #[test]
+    fn scale_in_single_precision() {
+        let f = |value: f32| Number::Float(value);
+        let line = Line { input_min: f(4000.0), input_max: f(20000.0), scaled_min: f(0.0), scaled_max: w(560) };
+        let outcome = scp(w(4006), line, Width::Float, mx());
+        assert_eq!(outcome.value, Some(f(f32::from_bits(0x3E57_0A3E))), "as a running controller had stored it");
     }
 
     #[test]

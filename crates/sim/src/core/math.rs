@@ -23,13 +23,10 @@ impl Core<'_> {
         self.set_status(status::MATH_HIGH, register.high);
     }
 
-    /// Stores what an instruction leaves behind: register, value, flags. The destination is resolved
+    /// Stores what an instruction leaves behind: value, register, flags. The destination is resolved
     /// before anything changes, so that a fault leaves no half of a result.
     pub(crate) fn leave(&mut self, dest: Target, outcome: Outcome) -> Exec<()> {
         let dest = self.fixed(dest)?;
-        if let Some(register) = outcome.register {
-            self.set_register(register);
-        }
         if let Some(mut value) = outcome.value {
             let kind = self.kind(dest);
             if value.width() != kind {
@@ -37,6 +34,9 @@ impl Core<'_> {
                 value = logic::mov(value, kind, self.mode()).value.unwrap_or(value);
             }
             self.store(dest, value)?;
+        }
+        if let Some(register) = outcome.register {
+            self.set_register(register);
         }
         self.flags(outcome.flags);
         Ok(())

@@ -126,14 +126,10 @@ impl Walker<'_> {
 
     fn leave(&mut self, address: &Address, outcome: Outcome) -> Walk<()> {
         let spot = self.spot(address)?;
-        if let Some(register) = outcome.register {
-            self.status(status::MATH_LOW, |_| register.low);
-            self.status(status::MATH_HIGH, |_| register.high);
-        }
         if let Some(value) = outcome.value {
             let mode = self.rules.math(self.status(status::CONTROL, |word| word));
             let value = logic::mov(value, Self::width(address), mode).value.unwrap_or(value);
-            // The place was found before the register changed.
+            // The place was found before anything changed.
             let ((file_type, number, index), _) = spot;
             let halves = match value {
                 Number::Word(value) => vec![value as u16],
@@ -145,6 +141,10 @@ impl Walker<'_> {
                     *word = half;
                 }
             }
+        }
+        if let Some(register) = outcome.register {
+            self.status(status::MATH_LOW, |_| register.low);
+            self.status(status::MATH_HIGH, |_| register.high);
         }
         self.status(status::FLAGS, |word| outcome.flags.store(word));
         let rules = self.rules;
