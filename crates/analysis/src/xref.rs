@@ -247,7 +247,7 @@ impl<'a> CrossReference<'a> {
             if let Some(address) = address {
                 match computed.get_mut(&**address) {
                     Some(spans) => spans.push(*span),
-                    None => drop(computed.insert(address.clone().into_owned(), vec![*span])),
+                    None => drop(computed.insert((**address).clone(), vec![*span])),
                 }
             }
         }
@@ -341,7 +341,7 @@ impl<'a> CrossReference<'a> {
 
     pub(crate) fn overlapping(&self, area: Area) -> Vec<Span> {
         let mut spans = Vec::new();
-        self.index.overlapping(&self.data.spaces, area, |span| spans.push(*span));
+        self.index.overlapping(&self.data.spans, &self.data.spaces, area, |span| spans.push(*span));
         spans
     }
 
@@ -371,6 +371,11 @@ impl<'a> CrossReference<'a> {
 
     pub(crate) fn place(&self, address: &Address) -> Option<Area> {
         self.data.spaces.find_place(address).map(|placed| placed.area)
+    }
+
+    /// What the address of a use names, if nothing about it is decided at run time.
+    fn named_area(&self, it: &Use<'_>) -> Option<Area> {
+        Some(self.data.named.get(it.named?)?.area)
     }
 
     pub(crate) fn use_of(&self, span: &Span) -> Option<&Use<'a>> {
@@ -431,7 +436,7 @@ pub(crate) fn joined_role(roles: impl Iterator<Item = Role>) -> Role {
 fn widen_written_lengths(data: &Collected<'_>, index: &mut Index) {
     for length in &data.lengths {
         let mut written = false;
-        index.overlapping(&data.spaces, length.len, |span| {
+        index.overlapping(&data.spans, &data.spaces, length.len, |span| {
             let elsewhere = data.uses.get(span.by).is_some_and(|it| it.location != length.location);
             // RES and the instructions of a control element leave LEN alone: they do not overlap it.
             written |= elsewhere && span.role.writes();

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt;
+use std::hash::{BuildHasher, Hash, RandomState};
 
 use crate::{Address, Place};
 
@@ -103,12 +104,52 @@ impl Comment {
 #[derive(Clone, Debug, Default)]
 pub struct Documentation {
     entries: Vec<AddressEntry>,
-    by_target: HashMap<Target, usize>,
+    by_target: Index,
     instruction_comments: Vec<InstructionComment>,
     /// By target and mnemonic; the first of equal ones.
-    instruction_comment_index: HashMap<Target, HashMap<String, usize>>,
+    by_target_and_mnemonic: Index,
     /// Comments that no rung shows: their rung was deleted or got another comment. Kept.
     pub detached_comments: Vec<Comment>,
+}
+
+/// Where the first of equal keys stands in a list. The list has the keys; a second copy of each here
+/// would be the larger part of all documentation, so this has their hashes only.
+#[derive(Clone, Debug, Default)]
+struct Index {
+    state: RandomState,
+    by_hash: HashMap<u64, usize>,
+}
+
+impl Index {
+    /// The number of the item with this key, or else the free place for it. `is` tells whether the
+    /// item of a number has the key.
+    fn find(&self, key: &impl Hash, is: impl Fn(usize) -> bool) -> Result<usize, u64> {
+        let mut place = self.state.hash_one(key);
+        loop {
+            match self.by_hash.get(&place) {
+                None => return Err(place),
+                Some(number) if is(*number) => return Ok(*number),
+                // Another key of the same hash: its place is taken, the next one serves.
+                Some(_) => place = place.wrapping_add(1),
+            }
+        }
+    }
+
+    /// Gives a key its number, unless it has one.
+    fn add(&mut self, key: &impl Hash, number: usize, is: impl Fn(usize) -> bool) {
+        if let Err(free) = self.find(key, is) {
+            self.by_hash.insert(free, number);
+        }
+    }
+}
+
+fn is_about(entries: &[AddressEntry], number: usize, target: &Target) -> bool {
+    entries.get(number).is_some_and(|entry| *entry.target.looked_up() == *target)
+}
+
+fn is_comment_on(comments: &[InstructionComment], number: usize, target: &Target, mnemonic: &str) -> bool {
+    let same = |of: &Target| *of.looked_up() == *target;
+    comments.get(number).is_some_and(|c| c.mnemonic == mnemonic && c.target.as_ref().is_some_and(same))
 }
 
 impl PartialEq for Documentation {
@@ -134,7 +175,8 @@ impl Documentation {
     /// Adds an entry. A later entry for the same target is kept but never looked up.
     pub fn add(&mut self, entry: AddressEntry) {
         if entry.target != Target::Unassigned {
-            self.by_target.entry(entry.target.looked_up().into_owned()).or_insert(self.entries.len());
+            let target = entry.target.looked_up();
+            self.by_target.add(&*target, self.entries.len(), |number| is_about(&self.entries, number, &target));
         }
         self.entries.push(entry);
     }
@@ -143,8 +185,10 @@ impl Documentation {
     /// looked up.
     pub fn add_instruction_comment(&mut self, comment: InstructionComment) {
         if let Some(target) = &comment.target {
-            let of_target = self.instruction_comment_index.entry(target.looked_up().into_owned()).or_default();
-            of_target.entry(comment.mnemonic.clone()).or_insert(self.instruction_comments.len());
+            let (target, comments) = (target.looked_up(), &self.instruction_comments);
+            self.by_target_and_mnemonic.add(&(&*target, &*comment.mnemonic), comments.len(), |number| {
+                is_comment_on(comments, number, &target, &comment.mnemonic)
+            });
         }
         self.instruction_comments.push(comment);
     }
@@ -161,13 +205,16 @@ impl Documentation {
 
     /// The entry of a target; the `#` of an indexed address does not count.
     pub fn entry(&self, target: &Target) -> Option<&AddressEntry> {
-        self.by_target.get(&*target.looked_up()).and_then(|index| self.entries.get(*index))
+        let target = target.looked_up();
+        let number = self.by_target.find(&*target, |number| is_about(&self.entries, number, &target)).ok()?;
+        self.entries.get(number)
     }
 
     /// The instruction comment of a target under a mnemonic.
     fn instruction_comment(&self, target: &Target, mnemonic: &str) -> Option<&InstructionComment> {
-        let index = self.instruction_comment_index.get(&*target.looked_up())?.get(mnemonic)?;
-        self.instruction_comments.get(*index)
+        let (target, comments) = (target.looked_up(), &self.instruction_comments);
+        let is = |number| is_comment_on(comments, number, &target, mnemonic);
+        comments.get(self.by_target_and_mnemonic.find(&(&*target, mnemonic), is).ok()?)
     }
 
     /// What a person means by `symbol`: the entry that has it, upper or lower case.
@@ -297,6 +344,22 @@ impl Target {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Every key with the same hash: each still has its own number.
+    #[test]
+    fn keys_of_one_hash_stay_apart() {
+        struct Same;
+        impl Hash for Same {
+            fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+        }
+        let keys = [5, 6, 5, 7];
+        let mut index = Index::default();
+        for (number, key) in keys.into_iter().enumerate() {
+            index.add(&Same, number, |n| keys[n] == key);
+        }
+        let found = [5, 6, 7, 8].map(|key| index.find(&Same, |n| keys[n] == key).ok());
+        assert_eq!(found, [Some(0), Some(1), Some(3), None]);
+    }
 
     fn target(text: &str) -> Target {
         Target::Address(Address::parse(text).expect("address"))

@@ -1,8 +1,9 @@
 //! From instructions to the stretches of data they touch.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ops::Deref;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use instr::{Form, Kind, Role};
 use ladder::{Address, Documentation, Expression, FileType, Image, Instruction, Mnemonic, Operand, Target};
@@ -15,6 +16,30 @@ use super::reach::member_area;
 use super::symbols::Symbols;
 use super::{Level, Note, Through, Unresolved, UnresolvedKind};
 
+/// An address of the program, or one made on the way. Small, because every use of an operand has one.
+#[derive(Clone)]
+pub(crate) enum Spelled<'a> {
+    Stored(&'a Address),
+    Made(Arc<Address>),
+}
+
+impl Deref for Spelled<'_> {
+    type Target = Address;
+
+    fn deref(&self) -> &Address {
+        match self {
+            Spelled::Stored(address) => address,
+            Spelled::Made(address) => address,
+        }
+    }
+}
+
+impl From<Address> for Spelled<'_> {
+    fn from(address: Address) -> Self {
+        Spelled::Made(Arc::new(address))
+    }
+}
+
 /// One operand of one instruction, or something it touches without naming it.
 pub(crate) struct Use<'a> {
     pub(crate) location: Location,
@@ -24,17 +49,17 @@ pub(crate) struct Use<'a> {
     /// What the table says may stand there; `None` for instructions that are not in the table.
     pub(crate) kind: Option<Kind>,
     /// As written, a symbol resolved.
-    pub(crate) address: Cow<'a, Address>,
+    pub(crate) address: Spelled<'a>,
     pub(crate) symbol: Option<&'a str>,
     pub(crate) through: Through,
     pub(crate) compiled: bool,
-    /// Where the address leads, if operands name it and nothing is decided at run time.
-    pub(crate) at: Option<Area>,
+    /// Number of the named address it is, if operands name it and nothing is decided at run time.
+    pub(crate) named: Option<usize>,
 }
 
 /// An address that operands name directly.
 pub(crate) struct Named<'a> {
-    pub(crate) address: Cow<'a, Address>,
+    pub(crate) address: Spelled<'a>,
     /// What it names.
     pub(crate) area: Area,
     /// As far as instructions that take it as the start of a file reach.
@@ -94,7 +119,7 @@ pub(crate) fn collect<'a>(image: &'a Image, documentation: &'a Documentation) ->
 pub(super) struct Collector<'a> {
     pub(super) image: &'a Image,
     /// Parsed addresses of the status words an instruction writes.
-    status: HashMap<&'static str, Rc<[Address]>>,
+    status: HashMap<&'static str, Rc<[Arc<Address>]>>,
     named: HashMap<(usize, u64, u64), usize>,
     pub(super) out: Collected<'a>,
 }
@@ -159,11 +184,11 @@ impl<'a> Collector<'a> {
                     mnemonic: &instruction.mnemonic,
                     operand: "",
                     kind: None,
-                    address: Cow::Owned(address),
+                    address: address.into(),
                     symbol,
                     through: Through::Operand,
                     compiled: instruction.compiled,
-                    at: None,
+                    named: None,
                 });
                 self.name(by, placed, 0);
                 self.span(by, open.area, Role::ReadWrite, false, None);
@@ -193,7 +218,7 @@ impl<'a> Collector<'a> {
 
     fn operand(&mut self, slot: Slot<'a>, operand: &'a Operand) {
         match operand {
-            Operand::Address(address) => self.address(slot, Cow::Borrowed(address), None),
+            Operand::Address(address) => self.address(slot, Spelled::Stored(address), None),
             Operand::Symbol(text) => self.symbol(slot, text),
             Operand::Expression(expression) => {
                 for value in values(expression) {
@@ -225,7 +250,7 @@ impl<'a> Collector<'a> {
 
     fn symbol(&mut self, slot: Slot<'a>, text: &'a str) {
         match self.out.symbols.resolve(text) {
-            Some(Target::Address(address)) => self.address(slot, Cow::Owned(address), Some(text)),
+            Some(Target::Address(address)) => self.address(slot, address.into(), Some(text)),
             // Called files and labels are the business of the call graph.
             Some(_) => {}
             None if free_text(slot.row) => {}
@@ -242,7 +267,7 @@ impl<'a> Collector<'a> {
     fn unit(&mut self, slot: Slot<'a>, types: &[FileType], number: u16) {
         let exists = |file_type: &&FileType| self.image.data_file(**file_type, 0).is_some();
         if let Some(file_type) = types.iter().find(exists).or(types.first()) {
-            self.address(slot, Cow::Owned(Address::element(*file_type, 0, number)), None);
+            self.address(slot, Address::element(*file_type, 0, number).into(), None);
         }
     }
 
@@ -253,7 +278,7 @@ impl<'a> Collector<'a> {
                 let element = Address::element(touch.file_type, 0, 0);
                 let placed = self.out.spaces.place(&element);
                 if let Some((area, level)) = member_area(placed, touch.file_type, touch.member) {
-                    let by = self.add_slot_use(slot, Cow::Owned(element), None, Through::Implied);
+                    let by = self.add_slot_use(slot, element.into(), None, Through::Implied);
                     self.span(by, area, touch.role, placed.definite, Some(level));
                 }
             }
@@ -276,11 +301,11 @@ impl<'a> Collector<'a> {
                 mnemonic: &site.instruction.mnemonic,
                 operand: "",
                 kind: None,
-                address: Cow::Owned(address),
+                address: address.into(),
                 symbol: None,
                 through: Through::Implied,
                 compiled: site.instruction.compiled,
-                at: None,
+                named: None,
             });
             self.span(by, placed.area, Role::Read, true, None);
         }
@@ -291,10 +316,9 @@ impl<'a> Collector<'a> {
         if known.status.is_empty() {
             return;
         }
-        let addresses = self
-            .status
-            .entry(known.mnemonic)
-            .or_insert_with(|| known.status.iter().filter_map(|text| Address::parse(text).ok()).collect());
+        let addresses = self.status.entry(known.mnemonic).or_insert_with(|| {
+            known.status.iter().filter_map(|text| Address::parse(text).ok().map(Arc::new)).collect()
+        });
         let addresses = Rc::clone(addresses);
         for address in addresses.iter() {
             let placed = self.out.spaces.place(address);
@@ -303,11 +327,11 @@ impl<'a> Collector<'a> {
                 mnemonic: &site.instruction.mnemonic,
                 operand: "",
                 kind: None,
-                address: Cow::Owned(address.clone()),
+                address: Spelled::Made(Arc::clone(address)),
                 symbol: None,
                 through: Through::Implied,
                 compiled: site.instruction.compiled,
-                at: None,
+                named: None,
             });
             self.span(by, placed.area, Role::Write, false, None);
         }
@@ -329,11 +353,11 @@ impl<'a> Collector<'a> {
                 mnemonic: &instruction.mnemonic,
                 operand,
                 kind: Some(Kind::Word),
-                address: Cow::Owned(inner.clone()),
+                address: inner.clone().into(),
                 symbol: None,
                 through: Through::Pointer,
                 compiled: instruction.compiled,
-                at: None,
+                named: None,
             });
             self.name(by, placed, 0);
             self.span(by, placed.area, Role::Read, placed.definite, None);
@@ -348,7 +372,7 @@ impl<'a> Collector<'a> {
     pub(super) fn add_slot_use(
         &mut self,
         slot: Slot<'a>,
-        address: Cow<'a, Address>,
+        address: Spelled<'a>,
         symbol: Option<&'a str>,
         through: Through,
     ) -> usize {
@@ -361,7 +385,7 @@ impl<'a> Collector<'a> {
             symbol,
             through,
             compiled: slot.site.instruction.compiled,
-            at: None,
+            named: None,
         })
     }
 
@@ -373,15 +397,14 @@ impl<'a> Collector<'a> {
         }
         let area = placed.area;
         let Some(it) = self.out.uses.get_mut(by) else { return };
-        it.at = Some(area);
-        let address = &it.address;
         let next = self.out.named.len();
         let index = *self.named.entry((area.space, area.first, area.bits)).or_insert(next);
+        it.named = Some(index);
         if index == next {
-            let mut address = address.clone();
-            if address.indexed {
-                address.to_mut().indexed = false;
-            }
+            let address = match it.address.indexed {
+                true => Address { indexed: false, ..(*it.address).clone() }.into(),
+                false => it.address.clone(),
+            };
             self.out.named.push(Named { address, area, reach: area.bits });
         }
         if let Some(named) = self.out.named.get_mut(index) {

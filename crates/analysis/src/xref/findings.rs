@@ -114,7 +114,7 @@ impl CrossReference<'_> {
         let (mut read, mut written) = (false, false);
         for span in self.overlapping(area) {
             let Some(it) = self.use_of(&span) else { continue };
-            let names_it = it.at == Some(named.area);
+            let names_it = self.named_area(it) == Some(named.area);
             if names_it {
                 users.push(it.location);
             }
@@ -138,7 +138,7 @@ impl CrossReference<'_> {
             locations.dedup();
             found.push(Finding {
                 kind,
-                address: named.address.clone().into_owned(),
+                address: (*named.address).clone(),
                 expected: expected(kind, &named.address),
                 locations,
                 value: self.value(&named.address),
@@ -176,7 +176,7 @@ impl CrossReference<'_> {
                 _ if space.bits().is_some_and(|bits| span.area.end() > bits) => FindingKind::BeyondEnd,
                 _ => continue,
             };
-            let first = it.at.map_or(span.area.first, |area| area.first);
+            let first = self.named_area(it).map_or(span.area.first, |area| area.first);
             let new = || Place { address: &it.address, locations: Vec::new(), verified: false };
             let place = places.entry((kind, span.area.space, first)).or_insert_with(new);
             place.locations.push(it.location);

@@ -19,14 +19,17 @@ pub(crate) struct Span {
 
 #[derive(Default)]
 struct Bucket {
-    /// Bounded spans of at most one element, by first bit.
-    narrow: Vec<Span>,
+    /// First bit and number of each bounded span of at most one element, by first bit.
+    narrow: Vec<(u64, u32)>,
     widest: u64,
-    /// Ranges, open ends and repeated parts.
-    wide: Vec<Span>,
+    /// Numbers of ranges, open ends and repeated parts.
+    wide: Vec<u32>,
+    /// Spans found after sorting.
+    late: Vec<Span>,
 }
 
-/// All spans, one bucket per space.
+/// The numbers of all spans, one bucket per space. The spans themselves stay where they are, because
+/// a large program has many.
 pub(crate) struct Index {
     buckets: Vec<Bucket>,
 }
@@ -34,19 +37,19 @@ pub(crate) struct Index {
 impl Index {
     pub(crate) fn new(spans: &[Span], spaces: &Spaces<'_>) -> Index {
         let mut buckets: Vec<Bucket> = (0..spaces.len()).map(|_| Bucket::default()).collect();
-        for span in spans {
+        for (number, span) in (0_u32..).zip(spans) {
             let stride = spaces.stride(span.area.space);
             if let Some(bucket) = buckets.get_mut(span.area.space) {
                 if span.area.bits <= stride && span.area.part.is_none() {
                     bucket.widest = bucket.widest.max(span.area.bits);
-                    bucket.narrow.push(*span);
+                    bucket.narrow.push((span.area.first, number));
                 } else {
-                    bucket.wide.push(*span);
+                    bucket.wide.push(number);
                 }
             }
         }
         for bucket in &mut buckets {
-            bucket.narrow.sort_by_key(|span| span.area.first);
+            bucket.narrow.sort_unstable();
         }
         Index { buckets }
     }
@@ -54,29 +57,31 @@ impl Index {
     /// Adds a span that was found after sorting.
     pub(crate) fn add(&mut self, span: Span) {
         if let Some(bucket) = self.buckets.get_mut(span.area.space) {
-            bucket.wide.push(span);
+            bucket.late.push(span);
         }
     }
 
     /// Calls `found` with every span that has a bit in common with `area`, those through an
-    /// indirect file number included.
-    pub(crate) fn overlapping(&self, spaces: &Spaces<'_>, area: Area, mut found: impl FnMut(&Span)) {
-        self.in_space(area, spaces.stride(area.space), &mut found);
+    /// indirect file number included. `spans` are those the index was made of.
+    pub(crate) fn overlapping(&self, spans: &[Span], spaces: &Spaces<'_>, area: Area, mut found: impl FnMut(&Span)) {
+        self.in_space(spans, area, spaces.stride(area.space), &mut found);
         let Some(space) = spaces.get(area.space) else { return };
         let any_file = Key { number: None, slot: None, ..space.key };
         if any_file != space.key
             && let Some(any) = spaces.find(any_file)
         {
-            self.in_space(Area { space: any, ..area }, spaces.stride(any), &mut found);
+            self.in_space(spans, Area { space: any, ..area }, spaces.stride(any), &mut found);
         }
     }
 
-    fn in_space(&self, area: Area, stride: u64, found: &mut impl FnMut(&Span)) {
+    fn in_space(&self, spans: &[Span], area: Area, stride: u64, found: &mut impl FnMut(&Span)) {
         let Some(bucket) = self.buckets.get(area.space) else { return };
         let earliest = area.first.saturating_sub(bucket.widest);
-        let start = bucket.narrow.partition_point(|span| span.area.first < earliest);
-        let near = bucket.narrow.iter().skip(start).take_while(|span| span.area.first < area.end());
-        for span in near.chain(&bucket.wide) {
+        let start = bucket.narrow.partition_point(|(first, _)| *first < earliest);
+        let near = bucket.narrow.iter().skip(start).take_while(|(first, _)| *first < area.end());
+        let numbers = near.map(|(_, number)| number).chain(&bucket.wide);
+        let indexed = numbers.filter_map(|number| spans.get(usize::try_from(*number).ok()?));
+        for span in indexed.chain(&bucket.late) {
             if span.area.overlaps(&area, stride) {
                 found(span);
             }
@@ -122,7 +127,7 @@ mod tests {
         for _ in 0..100 {
             let asked = area();
             let mut found = Vec::new();
-            index.overlapping(&spaces, asked, |span| found.push(span.by));
+            index.overlapping(&spans, &spaces, asked, |span| found.push(span.by));
             found.sort_unstable();
             // Bit by bit, without the arithmetic of the areas.
             let has = |area: &Area, bit: u64| {

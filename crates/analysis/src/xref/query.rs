@@ -49,7 +49,7 @@ impl CrossReference<'_> {
         let named = self.data.named.iter();
         let mut groups: Vec<_> = named
             .filter(|named| named.address.file_type == file_type && named.address.file.number() == Some(number))
-            .map(|named| (group_key(&named.address, Some(named.area)), self.group(named.address.clone().into_owned())))
+            .map(|named| (group_key(&named.address, Some(named.area)), self.group((*named.address).clone())))
             .collect();
         groups.sort_by(|a, b| a.0.cmp(&b.0));
         let groups = groups.into_iter().map(|(_, group)| group).collect();

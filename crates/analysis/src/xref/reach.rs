@@ -1,19 +1,17 @@
 //! How far an operand reaches from the address it names, and what of that it touches.
 
-use std::borrow::Cow;
-
 use instr::{Extent, Kind, Role, Stored};
 use ladder::{Address, FileType, Operand, member_by_name, members_of};
 
 use crate::space::{Area, OPEN, Part, Placed};
 
-use super::collect::{Collector, RunTimeLength, Site, Slot};
+use super::collect::{Collector, RunTimeLength, Site, Slot, Spelled};
 use super::index::Span;
 use super::message::{Size, transfer};
 use super::{Level, Note, Through};
 
 impl<'a> Collector<'a> {
-    pub(super) fn address(&mut self, slot: Slot<'a>, address: Cow<'a, Address>, symbol: Option<&'a str>) {
+    pub(super) fn address(&mut self, slot: Slot<'a>, address: Spelled<'a>, symbol: Option<&'a str>) {
         let Slot { site, row } = slot;
         self.pointers(site.location, site.instruction, row.name, &address);
         let as_file = takes_file(row);
@@ -21,7 +19,7 @@ impl<'a> Collector<'a> {
         if by_index {
             let register = Address::element(FileType::S, 2, 24);
             let placed = self.out.spaces.place(&register);
-            let by = self.add_slot_use(slot, Cow::Owned(register), None, Through::IndexRegister);
+            let by = self.add_slot_use(slot, register.into(), None, Through::IndexRegister);
             self.span(by, placed.area, Role::Read, true, None);
         }
         // A parameter written as an address is read for its value.
@@ -29,8 +27,7 @@ impl<'a> Collector<'a> {
         let placed = self.out.spaces.place(&address);
         let file_type = address.file_type;
         let touched = row.touches.iter().any(|touch| touch.file_type == file_type);
-        let by = self.add_slot_use(slot, address, symbol, Through::Operand);
-        let Some(address) = self.out.uses.get(by).map(|it| it.address.clone().into_owned()) else { return };
+        let by = self.add_slot_use(slot, address.clone(), symbol, Through::Operand);
         if by_index {
             self.out.computed.push(by);
             let area = self.whole_file(placed, &address).area;
