@@ -15,4 +15,4 @@ pub mod tables;
 pub mod to_rss;
 pub mod verify;
 
-pub use open::{OpenError, open};
+pub use open::{MAX_JSON, MAX_SLC_TEXT, OpenError, open};

@@ -30,6 +30,13 @@ impl fmt::Display for OpenError {
 
 impl std::error::Error for OpenError {}
 
+/// Largest SLC text that is read: ten times what the largest known program gives. The model of a text
+/// takes many times its size.
+pub const MAX_SLC_TEXT: usize = 4 << 20;
+
+/// Largest JSON project that is read, as large as a project file may be.
+pub const MAX_JSON: usize = rss::container::MAX_FILE;
+
 /// Opens an `.RSS` file, SLC text or a JSON project; the content decides, never the name.
 /// `file_name` is only recorded.
 ///
@@ -45,14 +52,32 @@ pub fn open(bytes: &[u8], file_name: &str, mode: Mode) -> Result<Project, OpenEr
     match rss::Project::read(bytes, mode) {
         Ok(file) => strict(crate::from_rss::project(&file, source), mode),
         Err(rss::Error::Foreign(rss::Foreign::SlcText)) => {
+            within(bytes, MAX_SLC_TEXT, "an SLC text")?;
             let project = crate::slc::project::read(&crate::slc::decode(bytes)).map_err(OpenError::Text)?;
             strict(Project { source, ..project }, mode)
         }
         Err(error) => match json_text(bytes) {
-            Some(text) => crate::json::from_json(text).map_err(OpenError::Json),
+            Some(text) => {
+                within(bytes, MAX_JSON, "a JSON project")?;
+                crate::json::from_json(text).map_err(OpenError::Json)
+            }
             None => Err(OpenError::File(error)),
         },
     }
+}
+
+fn within(bytes: &[u8], limit: usize, what: &str) -> Result<(), OpenError> {
+    if bytes.len() <= limit {
+        return Ok(());
+    }
+    Err(OpenError::File(rss::Error::from(rss::Deviation {
+        stream: String::new(),
+        space: rss::Space::File,
+        offset: limit,
+        record: String::new(),
+        expected: format!("{what} of at most {limit} bytes"),
+        found: format!("{} bytes", bytes.len()),
+    })))
 }
 
 /// A document that opens with `{` and names our schema near its beginning.

@@ -213,6 +213,9 @@ impl<'a> Record<'a> for ExtensionalDataFiles<'a> {
 
 const FILE: &str = "CDataFile";
 const M_FILE: &str = "CSlcMDataFile";
+/// Files that one list may hold. Compiled code names a file by one byte, so no list needs more than
+/// 256; the bound, with room to spare, keeps a small stream of tiny files from claiming all memory.
+const MAX_FILES: usize = 4096;
 /// Fewest bytes of a file with its tag.
 const MIN_FILE: usize = 2 + 16 + 8;
 
@@ -247,7 +250,11 @@ fn files<'a>(
     class: &'static str,
     extended: bool,
 ) -> Result<()> {
+    let at = r.offset();
     let count = r.count("a number of files", MIN_FILE)?;
+    if count > MAX_FILES {
+        return Err(r.fault_at(at, format_args!("at most {MAX_FILES} files"), count));
+    }
     // A count is a claim; files beyond the usual number make their room as they come.
     out.reserve_exact(count.min(1024));
     r.mark();

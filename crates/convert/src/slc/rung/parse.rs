@@ -149,7 +149,7 @@ impl<'t, 'a> Parser<'t, 'a> {
                 let end = match (open.is_empty(), framed) {
                     (false, _) => "BND",
                     (true, true) => "EOR",
-                    (true, false) => return Ok(Rung::new(series)),
+                    (true, false) => return Ok(Rung::new(exact(series))),
                 };
                 return Err(self.error().expected(end));
             };
@@ -163,12 +163,12 @@ impl<'t, 'a> Parser<'t, 'a> {
                     open.push(Open { legs: Vec::new(), outer: std::mem::take(&mut series) });
                 }
                 Some(Keyword::Structure("NXB")) => match open.last_mut() {
-                    Some(branch) => branch.legs.push(std::mem::take(&mut series)),
+                    Some(branch) => branch.legs.push(exact(std::mem::take(&mut series))),
                     None => return Err(error(token).expected("a BST before NXB")),
                 },
                 Some(Keyword::Structure("BND")) => match open.pop() {
                     Some(Open { mut legs, mut outer }) => {
-                        legs.push(series);
+                        legs.push(exact(series));
                         outer.push(Element::Branch(Branch { legs }));
                         series = outer;
                     }
@@ -176,7 +176,7 @@ impl<'t, 'a> Parser<'t, 'a> {
                 },
                 Some(Keyword::Structure("EOR")) if open.is_empty() => {
                     self.at += 1;
-                    return Ok(Rung::new(series));
+                    return Ok(Rung::new(exact(series)));
                 }
                 Some(Keyword::Structure("EOR")) => return Err(error(token).expected("BND before the end of the rung")),
                 Some(Keyword::Structure(_)) => return Err(error(token).expected("EOR before the next rung")),
@@ -363,6 +363,12 @@ impl<'t, 'a> Parser<'t, 'a> {
         }
         words
     }
+}
+
+/// Without the room a growing list keeps; most rungs are short and a program has many.
+fn exact(mut series: Series) -> Series {
+    series.shrink_to_fit();
+    series
 }
 
 enum Choice {
