@@ -11,12 +11,13 @@
 //! form, so text settles after one step.
 
 use std::fmt;
+use std::hash::{Hash, Hasher};
 
 use crate::FileType;
 use crate::members::{member_by_name, member_name};
 
 /// A number in an address, or the address whose value gives it when the program runs.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Written in the program.
     Number(u16),
@@ -35,7 +36,7 @@ impl Place {
 }
 
 /// An address in the data table.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
     /// Written with `#`: the start of a file, or an address indexed by S:24.
     pub indexed: bool,
@@ -50,6 +51,23 @@ pub struct Address {
     pub word: Option<u16>,
     /// Bit number: 0 to 15, to 31 in long words.
     pub bit: Option<Place>,
+}
+
+impl Hash for Address {
+    /// The plain numbers at once: documentation and cross reference look addresses up by the ten
+    /// thousand.
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let plain = |place: Option<&Place>| place.and_then(Place::number).unwrap_or(u16::MAX);
+        let numbers = [plain(Some(&self.file)), plain(Some(&self.element)), plain(self.bit.as_ref())];
+        let [file, element, bit] = numbers.map(u64::from);
+        state.write_u64(file << 48 | element << 32 | bit << 16 | u64::from(self.word.unwrap_or(u16::MAX)));
+        (self.file_type, self.indexed).hash(state);
+        for place in [Some(&self.file), Some(&self.element), self.bit.as_ref()].into_iter().flatten() {
+            if let Place::Indirect(inner) = place {
+                inner.hash(state);
+            }
+        }
+    }
 }
 
 /// Why a text is not an address.
@@ -211,7 +229,7 @@ struct Reader<'a> {
     at: usize,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     fn expected(&self, expected: &'static str) -> AddressError {
         AddressError { offset: self.at, expected }
     }
@@ -226,7 +244,7 @@ impl Reader<'_> {
         found
     }
 
-    fn word(&mut self, wanted: impl Fn(u8) -> bool) -> &str {
+    fn word(&mut self, wanted: impl Fn(u8) -> bool) -> &'a str {
         let start = self.at;
         while self.peek().is_some_and(&wanted) {
             self.at += 1;
@@ -236,9 +254,17 @@ impl Reader<'_> {
     }
 
     fn number(&mut self) -> Result<u16, AddressError> {
-        let start = self.at;
-        let expected = AddressError { offset: start, expected: "a number from 0 to 65535" };
-        self.word(|b| b.is_ascii_digit()).parse().map_err(|_| expected)
+        let expected = self.expected("a number from 0 to 65535");
+        let mut number = None;
+        while let Some(digit @ b'0'..=b'9') = self.peek() {
+            let shifted = number.unwrap_or(0_u16).checked_mul(10);
+            number = shifted.and_then(|number| number.checked_add(u16::from(digit - b'0')));
+            if number.is_none() {
+                return Err(expected);
+            }
+            self.at += 1;
+        }
+        number.ok_or(expected)
     }
 
     /// A number or a bracketed address.
@@ -305,13 +331,13 @@ impl Reader<'_> {
             address.word = Some(word);
             return Ok(());
         }
-        let name = self.word(|b| b.is_ascii_alphanumeric()).to_owned();
+        let name = self.word(|b| b.is_ascii_alphanumeric());
         if address.file_type == FileType::ST && name.eq_ignore_ascii_case("DATA") && self.take(b'[') {
             let index = self.number()?;
             address.word = index.checked_add(1);
             return if self.take(b']') && address.word.is_some() { Ok(()) } else { Err(self.expected("]")) };
         }
-        match member_by_name(address.file_type, &name) {
+        match member_by_name(address.file_type, name) {
             Some(member) => {
                 // `T4:0.DN` means the flag that the complete form writes `T4:0/DN`.
                 address.word = Some(member.word);
@@ -331,8 +357,8 @@ impl Reader<'_> {
             address.bit = Some(self.place(depth)?);
             return Ok(());
         }
-        let name = self.word(|b| b.is_ascii_alphanumeric()).to_owned();
-        match member_by_name(address.file_type, &name) {
+        let name = self.word(|b| b.is_ascii_alphanumeric());
+        match member_by_name(address.file_type, name) {
             Some(member) if member.bit.is_some() && address.word.is_none_or(|w| w == member.word) => {
                 address.word = Some(member.word);
                 address.bit = member.bit.map(Place::Number);

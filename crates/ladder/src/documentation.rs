@@ -1,9 +1,11 @@
 //! Symbols, descriptions and comments, and the rules by which they are shown at an operand.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
 use std::fmt;
-use std::hash::{BuildHasher, Hash, RandomState};
+use std::hash::{BuildHasher, Hash};
+
+use foldhash::HashMap;
+use foldhash::fast::RandomState;
 
 use crate::{Address, Place};
 

@@ -1,10 +1,10 @@
 //! From instructions to the stretches of data they touch.
 
-use std::collections::HashMap;
 use std::ops::Deref;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use foldhash::{HashMap, HashMapExt};
 use instr::{Form, Kind, Role};
 use ladder::{Address, Documentation, Expression, FileType, Image, Instruction, Mnemonic, Operand, Target};
 

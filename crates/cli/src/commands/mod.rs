@@ -109,10 +109,21 @@ fn each_project(
     let bar = files::progress(files.len(), stdout.is_terminal());
     let mut out = std::io::BufWriter::new(stdout.lock());
     let mut outcome = Outcome::Done;
+    let mut left = files.len();
     for path in files {
+        left -= 1;
         bar.set_message(path.display().to_string());
         let result = match open(&path, mode(input.strict)) {
-            Ok(project) => one_project(Opened { path, project, choice: input.image }, input.json, &mut out, &mut work)?,
+            Ok(project) => {
+                let opened = Opened { path, project, choice: input.image };
+                let result = one_project(&opened, input.json, &mut out, &mut work)?;
+                if left == 0 {
+                    // The process ends next. Giving back a large model piece by piece would take a tenth
+                    // of the whole run.
+                    std::mem::forget(opened);
+                }
+                result
+            }
             Err(why) => {
                 if input.json {
                     let line = serde_json::json!({"file": path.display().to_string(), "error": why});
@@ -131,7 +142,7 @@ fn each_project(
 }
 
 fn one_project(
-    opened: Opened,
+    opened: &Opened,
     json: bool,
     out: &mut impl Write,
     work: &mut impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
