@@ -30,7 +30,7 @@ pub enum Choice {
     CountBackSetsOpposite,
     /// A later good math result clears S:5/0 on MicroLogix 1100 to 1500.
     TrapFollowsOverflow,
-    /// Exact halves of a float become the integer away from zero instead of the even one on SLC.
+    /// Exact halves of a float become the integer away from zero instead of the even one.
     FloatTiesAway,
     /// DIV by zero with a negative dividend stores -32768.
     DivideByZeroSigned,
@@ -146,8 +146,9 @@ pub const LIST: &[Row] = &[
         Choice::FloatTiesAway,
         "float-ties-away",
         "a float halfway between integers becomes the even one",
-        "on SLC it becomes the one away from zero",
-        "stated for the MicroLogix 1100; not found for SLC",
+        "it becomes the one away from zero",
+        "the even one is printed for the MicroLogix 1100; nothing was found for SLC, and a MicroLogix 1400 saved \
+         while running holds 3 where 3.0 - 0.5 was stored in an integer",
     ),
     row(
         Choice::DivideByZeroSigned,

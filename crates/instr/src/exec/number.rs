@@ -160,18 +160,13 @@ pub(super) fn fit_integer(result: i64, to: Width, wrap: bool) -> (Number, bool) 
 ///
 /// Into an integer it is rounded to the nearest one, halves to the even one; not-a-number, infinity
 /// and what is out of range are limited whatever S:2/14 says; underflow gives +0 (printed for the
-/// MicroLogix 1100 and 1400). Halves on SLC are open: [`Choice::FloatTiesAway`]. Not-a-number becomes
-/// the positive limit (printed for the MicroLogix 1400). A float that is no finite number counts as not fitting, and stays in a
-/// float destination (printed for SLC: the overflow result remains there).
+/// MicroLogix 1100 and 1400). Halves on SLC are open, and a MicroLogix 1400 was saved with the other
+/// reading: [`Choice::FloatTiesAway`]. Not-a-number becomes the positive limit (printed for the
+/// MicroLogix 1400). A float that is no finite number counts as not fitting, and stays in a float
+/// destination (printed for SLC: the overflow result remains there).
 #[inline]
 pub(super) fn fit_float(result: f32, to: Width, mode: MathMode) -> (Number, bool) {
-    let rounded = || {
-        if mode.rules.has(Choice::FloatTiesAway) && mode.rules.lineage.is_slc_like() {
-            result.round()
-        } else {
-            result.round_ties_even()
-        }
-    };
+    let rounded = || if mode.rules.has(Choice::FloatTiesAway) { result.round() } else { result.round_ties_even() };
     match to {
         Width::Word => {
             let value = rounded();
@@ -239,13 +234,12 @@ mod tests {
     }
 
     #[test]
-    fn slc_halves_can_be_read_otherwise() {
-        let away = |lineage| {
+    fn halves_can_be_read_otherwise() {
+        for lineage in [Lineage::S3, Lineage::Mx] {
             let mode = Rules::new(lineage).with(Choice::FloatTiesAway).math(0);
-            fit_float(-2.5, Width::Word, mode).0
-        };
-        assert_eq!(away(Lineage::S3), Number::Word(-3));
-        assert_eq!(away(Lineage::Mx), Number::Word(-2), "printed for MicroLogix");
+            assert_eq!(fit_float(-2.5, Width::Word, mode).0, Number::Word(-3));
+            assert_eq!(fit_float(3.0 - 0.5, Width::Word, mode).0, Number::Word(3));
+        }
     }
 
     #[test]
