@@ -8,6 +8,7 @@ mod codes;
 pub mod csv;
 pub mod from_rss;
 pub mod json;
+mod limits;
 mod message;
 mod open;
 pub mod slc;
@@ -15,4 +16,5 @@ pub mod tables;
 pub mod to_rss;
 pub mod verify;
 
+pub use limits::MAX_PARTS;
 pub use open::{MAX_JSON, MAX_SLC_TEXT, OpenError, open};

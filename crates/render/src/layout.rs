@@ -19,6 +19,31 @@ pub(crate) enum NotDrawn {
     Depth,
     /// Too many nested branches for the width.
     Width,
+    /// More elements than [`MAX_ELEMENTS`].
+    Size,
+}
+
+/// Instructions, branches and legs of one drawing. Editors allow some hundred in a rung; a drawing takes
+/// a kilobyte and more for each.
+const MAX_ELEMENTS: usize = 20_000;
+
+/// Whether a rung can be drawn with memory that a rung is worth. Stops counting where it cannot.
+pub(crate) fn is_drawable(series: &Series) -> bool {
+    let mut open = vec![series];
+    let mut count = 0;
+    while let Some(series) = open.pop() {
+        count += series.len();
+        for element in series {
+            if let Element::Branch(branch) = element {
+                count += branch.legs.len();
+                open.extend(&branch.legs);
+            }
+        }
+        if count > MAX_ELEMENTS {
+            return false;
+        }
+    }
+    true
 }
 
 /// Columns a branch needs besides its legs: two rails and a stub of wire outside each.

@@ -4,10 +4,13 @@ use ladder::{ProgramFile, ProgramFileKind, Rung};
 
 use crate::Style;
 use crate::face::Source;
-use crate::layout::{NotDrawn, measure, place};
+use crate::layout::{NotDrawn, is_drawable, measure, place};
 use crate::plain::words;
 use crate::scene::{Item, Role, Scene, Shape};
 use crate::text::{clean, width, wrap};
+
+/// Lines of a comment that are drawn. On paper a page has some seventy.
+const COMMENT_LINES: usize = 2000;
 
 /// Columns of the widest rung number of a file, at least the four of paper.
 fn number_columns(file: &ProgramFile) -> usize {
@@ -28,15 +31,22 @@ pub(crate) fn compose(source: &Source<'_>, file: &ProgramFile, index: usize, run
             items.push(Item::text(x, top, Role::Title, line.as_str()));
             top += 1;
         }
-        for line in comment.lines() {
+        let mut lines = comment.lines();
+        for line in lines.by_ref().take(COMMENT_LINES) {
             for part in wrap(&clean(line), room) {
                 items.push(Item::text(left + 2, top, Role::Comment, part));
                 top += 1;
             }
         }
+        let more = lines.count();
+        if more > 0 {
+            items.push(Item::text(left + 2, top, Role::Note, format!("({more} more lines of this comment)")));
+            top += 1;
+        }
     }
     let room = right - left - 1;
-    let (number_row, bottom) = match measure(source, &rung.series, room, 0) {
+    let measured = if is_drawable(&rung.series) { measure(source, &rung.series, room, 0) } else { Err(NotDrawn::Size) };
+    let (number_row, bottom) = match measured {
         Ok(series) => {
             let row = top + series.above;
             let bottom = row + series.below;
@@ -65,6 +75,7 @@ pub(crate) fn compose(source: &Source<'_>, file: &ProgramFile, index: usize, run
 fn place_words(items: &mut Vec<Item>, reason: NotDrawn, text: &str, left: usize, top: usize, room: usize) -> usize {
     let remark = match reason {
         NotDrawn::Depth => "branches nested too deep to draw; the rung in words:",
+        NotDrawn::Size => "more elements than a drawing can show; the rung in words:",
         NotDrawn::Width => "too many nested branches for this width; the rung in words:",
     };
     let mut row = top;

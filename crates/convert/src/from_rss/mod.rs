@@ -18,6 +18,7 @@ use rss::summary::{Summary, id};
 use rss::{ImageKind, Mode, Record, StreamKind};
 
 use crate::codes;
+use crate::limits::Parts;
 use documentation::Comments;
 
 /// Reads every image of a project file into the model. `source` names the file; the version and
@@ -39,8 +40,7 @@ pub fn project(file: &rss::Project, source: Source) -> Project {
 /// One stored instruction in the model, for callers that look at instructions alone.
 pub(crate) fn instruction(stored: &rss::program::Instruction<'_>) -> ladder::Instruction {
     let mut unread = Vec::new();
-    let mut notes =
-        Notes { stream: String::new(), record: String::new(), borrowed_comments: false, diagnostics: &mut unread };
+    let mut notes = Notes::new(String::new(), &mut unread);
     program::instruction(stored, &mut notes)
 }
 
@@ -63,10 +63,16 @@ pub(crate) struct Notes<'d> {
     record: String,
     /// The rungs refer to the comments of another image, which may have changed since.
     borrowed_comments: bool,
+    /// Of the program so far.
+    parts: Parts,
     diagnostics: &'d mut Vec<Diagnostic>,
 }
 
-impl Notes<'_> {
+impl<'d> Notes<'d> {
+    fn new(stream: String, diagnostics: &'d mut Vec<Diagnostic>) -> Notes<'d> {
+        Notes { stream, record: String::new(), borrowed_comments: false, parts: Parts::default(), diagnostics }
+    }
+
     fn within(&mut self, record: String) {
         self.record = record;
     }
@@ -77,6 +83,10 @@ impl Notes<'_> {
 
     fn warning(&mut self, message: String) {
         self.push(Severity::Warning, message);
+    }
+
+    fn error(&mut self, message: String) {
+        self.push(Severity::Error, message);
     }
 
     fn push(&mut self, severity: Severity, message: String) {
@@ -139,12 +149,8 @@ impl<'f> ImageReader<'f> {
             _ => self.documentation(kind, &mut image),
         };
         if let Some(record) = self.read::<ProgramFiles<'_>>(kind, StreamKind::ProgramFiles) {
-            let mut notes = Notes {
-                stream: StreamKind::ProgramFiles.path(kind),
-                record: String::new(),
-                borrowed_comments: kind == ImageKind::Online,
-                diagnostics: &mut self.diagnostics,
-            };
+            let mut notes = Notes::new(StreamKind::ProgramFiles.path(kind), &mut self.diagnostics);
+            notes.borrowed_comments = kind == ImageKind::Online;
             image.program_files = program::program_files(&record, &mut comments, &mut notes);
         }
         if kind != ImageKind::Online {

@@ -8,6 +8,7 @@ use rss::program::{self, Item, LadFile, ProgramFiles};
 use super::Notes;
 use super::documentation::Comments;
 use crate::code;
+use crate::limits;
 
 pub(crate) fn program_files(
     stored: &ProgramFiles<'_>,
@@ -19,8 +20,16 @@ pub(crate) fn program_files(
 
 fn program_file(stored: &LadFile<'_>, comments: &mut Comments, notes: &mut Notes<'_>) -> ProgramFile {
     let number = stored.number;
-    let rungs = stored.rungs.iter().enumerate().map(|(index, rung)| {
+    let mut rungs: Vec<Rung> = Vec::with_capacity(stored.rungs.len());
+    for (index, rung) in stored.rungs.iter().enumerate() {
         notes.within(format!("file {number} > rung {index}"));
+        notes.parts.admit(1);
+        let series = series(&rung.leg.items, notes);
+        if notes.parts.exceeded() {
+            // Half a rung would look like a whole one.
+            notes.error(limits::left_out(stored.rungs.len() - index));
+            break;
+        }
         let comment = match rung.comment_id {
             0 => None,
             id => {
@@ -33,9 +42,8 @@ fn program_file(stored: &LadFile<'_>, comments: &mut Comments, notes: &mut Notes
                 comment
             }
         };
-        Rung { series: series(&rung.leg.items, notes), edited: rung.edited != 0, comment }
-    });
-    let rungs: Vec<Rung> = rungs.collect();
+        rungs.push(Rung { series, edited: rung.edited != 0, comment });
+    }
     ProgramFile {
         number,
         name: stored.name().trim_end().to_owned(),
@@ -62,10 +70,14 @@ fn kind(stored: &LadFile<'_>, number: u16) -> ProgramFileKind {
 fn series(items: &[Item<'_>], notes: &mut Notes<'_>) -> Series {
     let mut elements = Vec::with_capacity(items.len().saturating_sub(2));
     for item in items {
+        if notes.parts.exceeded() {
+            break;
+        }
         match item {
             Item::Instruction(stored) if stored.is_mark() => {}
             Item::Instruction(stored) => {
                 let mut read = instruction(stored, notes);
+                notes.parts.admit(1 + read.operands.len());
                 resolve_symbols(&mut read, stored, notes);
                 elements.push(Element::Instruction(read));
             }
@@ -86,7 +98,12 @@ fn series(items: &[Item<'_>], notes: &mut Notes<'_>) -> Series {
 
 fn legs(items: &[Item<'_>], notes: &mut Notes<'_>) -> Branch {
     let mut branch = Branch::default();
+    notes.parts.admit(1);
     for item in items {
+        notes.parts.admit(1);
+        if notes.parts.exceeded() {
+            break;
+        }
         match item {
             Item::Leg(leg) => branch.legs.push(series(&leg.items, notes)),
             Item::Instruction(stored) if stored.is_mark() => {}

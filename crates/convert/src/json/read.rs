@@ -14,6 +14,7 @@ use super::error::JsonError;
 use super::path::{Path, quoted};
 use super::structure::series_from;
 use super::target::target_from;
+use crate::limits::{self, MAX_PARTS, Parts};
 use crate::slc::rung::parse_rung;
 
 type Result<T> = std::result::Result<T, JsonError>;
@@ -102,7 +103,7 @@ fn image(doc: ImageDoc<'_>, path: &Path<'_>) -> Result<Image> {
     documentation.detached_comments = path.each("detached_comments", doc.detached_comments, detached_comment)?;
     Ok(Image {
         processor,
-        program_files: path.each("program_files", doc.program_files, |file, path| program_file(file, family, &path))?,
+        program_files: program_files(doc.program_files, family, &path.member("program_files"))?,
         data_files: path.each("data_files", doc.data_files, |file, path| data_file(file, &path))?,
         function_files: path.each("function_files", doc.function_files, |file, path| data_file(file, &path))?,
         io: IoConfiguration {
@@ -139,7 +140,13 @@ fn processor(doc: ProcessorDoc<'_>, path: &Path<'_>) -> Result<Processor> {
     })
 }
 
-fn program_file(doc: ProgramFileDoc<'_>, family: Family, path: &Path<'_>) -> Result<ProgramFile> {
+fn program_files(docs: Vec<ProgramFileDoc<'_>>, family: Family, path: &Path<'_>) -> Result<Vec<ProgramFile>> {
+    let mut parts = Parts::default();
+    let files = docs.into_iter().enumerate();
+    files.map(|(index, doc)| program_file(doc, family, &mut parts, &path.index(index))).collect()
+}
+
+fn program_file(doc: ProgramFileDoc<'_>, family: Family, parts: &mut Parts, path: &Path<'_>) -> Result<ProgramFile> {
     use ProgramFileKind::*;
     let number = doc.number;
     let kind = named([System, Ladder, Unused], |kind| kind.as_str(), &doc.kind, path.member("type"))?;
@@ -149,7 +156,12 @@ fn program_file(doc: ProgramFileDoc<'_>, family: Family, path: &Path<'_>) -> Res
         if usize::try_from(doc.number) != Ok(index) {
             return Err(path.member("number").error(index.to_string(), doc.number.to_string()));
         }
-        rung(doc, number, family, &path)
+        let rung = rung(doc, number, family, &path)?;
+        if !parts.admit(limits::of_rung(&rung.series)) {
+            let expected = format!("a program of at most {MAX_PARTS} rungs, instructions, operands and branches");
+            return Err(path.error(expected, "more"));
+        }
+        Ok(rung)
     });
     Ok(ProgramFile {
         number,

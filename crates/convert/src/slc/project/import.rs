@@ -8,6 +8,7 @@ use ladder::{
 };
 
 use super::processor;
+use crate::limits::{self, Parts};
 use crate::slc::file::{self, SlcFile};
 use crate::slc::rung::{parse_rung_at, unread_rung};
 
@@ -104,6 +105,7 @@ impl Importer {
     /// Files 0 and 1, those of the text, and unused numbers between.
     fn program_files(&mut self, file: &SlcFile, names: &file::Names, family: Family) -> Vec<ProgramFile> {
         let mut files: Vec<ProgramFile> = Vec::new();
+        let mut parts = Parts::default();
         for section in file.ladders() {
             let number = section.number;
             if !(2..=LARGEST_NUMBER).contains(&number) || files.iter().any(|file| file.number == number) {
@@ -112,7 +114,7 @@ impl Importer {
                 continue;
             }
             let mut rungs: Vec<Rung> = Vec::with_capacity(section.rungs.len() + 1);
-            for lines in &section.rungs {
+            for (index, lines) in section.rungs.iter().enumerate() {
                 let mut rung = match parse_rung_at(&lines.text, Some(family), lines.line.max(1)) {
                     Ok(rung) => rung,
                     Err(error) => {
@@ -121,6 +123,15 @@ impl Importer {
                         unread_rung(inner_text(&lines.text).as_str())
                     }
                 };
+                if !parts.admit(limits::of_rung(&rung.series)) {
+                    let message = limits::left_out(section.rungs.len() - index);
+                    self.diagnostics.push(Diagnostic {
+                        severity: Severity::Error,
+                        place: format!("file {number} > rung {index}"),
+                        message,
+                    });
+                    break;
+                }
                 rung.comment = lines.title.as_ref().map(|block| comment(block, number, rungs.len()));
                 self.open_instructions(&rung, number, rungs.len());
                 rungs.push(rung);

@@ -40,8 +40,10 @@ impl std::error::Error for FileError {}
 /// a rung with an error keeps its text and number, see [`super::rung::UNREAD`].
 ///
 /// # Errors
-/// A text without any section of such a file.
+/// A text without any section of such a file, or with more rungs than [`crate::MAX_PARTS`] by far
+/// allows.
 pub fn read(text: &str) -> Result<Project, FileError> {
+    within(text)?;
     let file = super::file::read(text);
     if file.sections.iter().all(|section| matches!(section, Section::Other(_))) {
         let lines = || (1_u32..).zip(text.lines());
@@ -50,4 +52,19 @@ pub fn read(text: &str) -> Result<Project, FileError> {
         return Err(FileError { line, expected: "an SLC file, which begins with START".to_owned(), found });
     }
     Ok(project(&file))
+}
+
+/// Rungs that a text may have: as many as a project file can. Empty ones and unreadable ones count.
+const MAX_RUNGS: usize = 65_535;
+
+/// Looks for the first rung too many before anything is made of the others.
+fn within(text: &str) -> Result<(), FileError> {
+    let rungs = (1_u32..).zip(text.lines()).filter(|(_, line)| line.trim_start().starts_with("SOR"));
+    match rungs.into_iter().nth(MAX_RUNGS) {
+        None => Ok(()),
+        Some((line, found)) => {
+            let found = found.trim().chars().take(40).collect();
+            Err(FileError { line, expected: format!("an SLC file of at most {MAX_RUNGS} rungs"), found })
+        }
+    }
 }

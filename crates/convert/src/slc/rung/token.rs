@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::error::TextError;
+use crate::limits::MAX_PARTS;
 
 /// One word of rung text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,6 +30,10 @@ pub(super) fn tokens(text: &str, first_line: u32) -> Result<Vec<Token<'_>>, Text
     let mut lexer = Lexer { text, at: 0, line: first_line, column: 1 };
     let mut found = Vec::new();
     while let Some(token) = lexer.next()? {
+        if found.len() >= MAX_PARTS {
+            let expected = format!("a rung of at most {MAX_PARTS} words");
+            return Err(TextError::at(token.line, token.column, &token.text).expected(expected));
+        }
         found.push(token);
     }
     Ok(found)
