@@ -1,0 +1,17 @@
+//! The Do-more dialect (AutomationDirect Do-more, BRX, DM-SIM): the text that Designer exports and
+//! imports, the instructions, and running them.
+//!
+//! A project is read with [`text::read`] into [`program::Project`], which keeps everything of the file
+//! in its order, and written with [`text::write()`]. [`instruction`] says what each instruction does to the
+//! stack of booleans and to its operands, [`stack`] whether a rung balances.
+//!
+//! Like every dialect this crate opens no file and reads no clock.
+
+pub mod diagnostic;
+pub mod instruction;
+pub mod program;
+pub mod stack;
+pub mod text;
+
+pub use diagnostic::{Diagnostic, Problem};
+pub use program::{CodeBlock, CodeKind, Comment, Instruction, Part, Project, Rung};
