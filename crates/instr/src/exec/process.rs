@@ -271,9 +271,12 @@ fn limits(block: &[u16; WORDS]) -> (f64, f64) {
 }
 
 /// UL and LL tell that the output exceeds words 11 and 12, whether it is limited to them or not; without
-/// values there (both 0) the range counts (printed: entering values enables the alarms).
+/// values there (both 0) the range counts (printed: entering values enables the alarms). The output is
+/// the one within 0 to 100 %: two loops of a running MicroLogix 1400 whose sum was far above, with 100
+/// in word 11 and OL off, were saved without UL.
 fn alarms(block: &mut [u16; WORDS], output: f64) {
     let full = f64::from(FULL_SCALE);
+    let output = output.clamp(0.0, full);
     let (low, high) = match (signed(block, word::OUTPUT_MIN), signed(block, word::OUTPUT_MAX)) {
         (0.0, 0.0) => (0.0, 100.0),
         entered => entered,
