@@ -18,6 +18,7 @@
 //! The order inside a step is `mode`, `set`, `edges`, then `scans` or `run`, then `fault` and `expect`.
 //! A step without `edges`, `scans` and `run` scans nothing. What the first step sets is there when the
 //! processor enters run, and is written once more behind the prescan: it is the state the test starts from.
+//! So is what a later step with `mode` sets; its timers alone stay as the change of mode leaves them.
 
 mod duration;
 mod literal;
@@ -96,7 +97,7 @@ pub struct Step {
     pub edges: Option<Edges>,
     /// How long to scan after that.
     pub length: Length,
-    /// The major fault code expected at the end.
+    /// The major fault code expected at the end; 0 expects none.
     pub fault: Option<Spot<u16>>,
     /// Values expected at the end, in the order written.
     pub expect: Vec<Assignment>,

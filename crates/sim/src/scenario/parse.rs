@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use ladder::{Address, Family};
+use ladder::Family;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -282,7 +282,7 @@ impl Reader<'_> {
         if target == Some(Target::DoMore) {
             return Ok(());
         }
-        match Address::parse(&address.value) {
+        match crate::outside::address(&address.value) {
             Ok(parsed) if parsed.indexed => Err(ScenarioError {
                 line: address.line,
                 key: key.to_owned(),
@@ -293,14 +293,25 @@ impl Reader<'_> {
         }
     }
 
-    /// Codes are printed in hex: `"0020"`, also with the marks of hex.
+    /// Codes are printed in hex: `"0020"`, also with the marks of hex; `"none"` and 0 expect no fault. A
+    /// number without quotes has to say that it is hex: nobody means fault 14h by `20`.
     fn fault(&self, value: &Value<'_>, key: &str) -> Result<Spot<u16>> {
+        let line = self.line(&value.span());
+        if let DeValue::Integer(number) = value.get_ref()
+            && number.radix() == 16
+            && let Some(code) = whole(value.get_ref()).and_then(|code| u16::try_from(code).ok())
+        {
+            return Ok(Spot { value: code, line });
+        }
         let text = self.text(value, key)?;
         let lower = text.trim().to_ascii_lowercase();
+        if lower == "none" {
+            return Ok(Spot { value: 0, line });
+        }
         let marked = lower.starts_with("0x") || lower.ends_with('h');
         let code = if marked { digits(&lower) } else { i64::from_str_radix(&lower, 16).ok() };
         match code.and_then(|code| u16::try_from(code).ok()) {
-            Some(value_) => Ok(Spot { value: value_, line: self.line(&value.span()) }),
+            Some(value) => Ok(Spot { value, line }),
             None => Err(self.expected(value, key, "a fault code in hex such as \"0020\"")),
         }
     }
@@ -403,6 +414,11 @@ mode   = "program-run"
             let toml = format!("ladder = \"OTE B3:0/0\"\n[[step]]\nfault = \"{text}\"\n");
             let scenario = Scenario::parse(&toml).expect(text);
             assert_eq!(scenario.steps[0].fault.as_ref().map(|fault| fault.value), Some(0x20), "{text}");
+        }
+        for (value, code) in [("0x20", 0x20), ("\"none\"", 0), ("\"0000\"", 0)] {
+            let toml = format!("ladder = \"OTE B3:0/0\"\n[[step]]\nfault = {value}\n");
+            let scenario = Scenario::parse(&toml).expect(value);
+            assert_eq!(scenario.steps[0].fault.as_ref().map(|fault| fault.value), Some(code), "{value}");
         }
     }
 }

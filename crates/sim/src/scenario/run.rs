@@ -3,11 +3,13 @@
 use std::fmt;
 use std::time::Duration;
 
-use ladder::{Address, Family, Image, Place, Rung, Value};
+use ladder::{Address, Family, FileType, Image, Place, Rung, Value};
 
 use super::literal::{Mismatch, matches, value_for};
 use super::{Assignment, Length, Scenario, Spot, Step, Subject, Target};
-use crate::{AccessError, Approximation, Choices, Machine, MajorFault, Options, Program, Refusal, inline_image};
+use crate::{
+    AccessError, Approximation, Choices, Machine, MajorFault, Options, Program, Refusal, inline_image, outside,
+};
 
 /// Where programs come from: `sim` reads no file and no text.
 pub trait Loader {
@@ -113,7 +115,7 @@ impl fmt::Display for Failure {
                 write!(f, "{address} expected {}, found {}", mismatch.expected, mismatch.found)
             }
             Found::Fault { expected, found } => {
-                match expected {
+                match expected.filter(|code| *code != 0) {
                     Some(code) => write!(f, "expected major fault {code:04X}, found ")?,
                     None => f.write_str("expected no major fault, found ")?,
                 }
@@ -210,7 +212,7 @@ fn named(scenario: &Scenario) -> impl Iterator<Item = &Spot<String>> {
 }
 
 fn address(spot: &Spot<String>) -> Result<Address, RunError> {
-    Address::parse(&spot.value).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
+    outside::address(&spot.value).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
 }
 
 /// A machine with what is counted while a scenario runs on it.
@@ -228,12 +230,20 @@ impl Player {
     fn step(&mut self, number: usize, step: &Step) -> Result<(), RunError> {
         if step.program_run {
             self.machine.enter_program();
+            // As before the first step: what is set is there when run is entered, and again behind the prescan.
+            self.assign(&step.set)?;
             self.machine.enter_run();
             self.entered = true;
         }
         // A fault on going to run belongs to the step that causes it.
         let before = if step.program_run || number == 1 { None } else { self.machine.fault() };
-        self.assign(&step.set)?;
+        if step.program_run {
+            // Not the timers: they enter run the way the change of mode leaves them.
+            let is_timer = |spot: &Assignment| address(&spot.address).is_ok_and(|a| a.file_type == FileType::T);
+            self.assign(step.set.iter().filter(|spot| !is_timer(spot)))?;
+        } else {
+            self.assign(&step.set)?;
+        }
         if let Some(edges) = &step.edges {
             for _ in 0..edges.count {
                 for level in [false, true] {
@@ -271,6 +281,7 @@ impl Player {
         let found = self.machine.fault();
         let expected = step.fault.as_ref().map(|spot| spot.value);
         let met = match expected {
+            Some(0) => found.is_none(),
             Some(code) => found.is_some_and(|fault| fault.code == code),
             None => found.is_none() || found == before,
         };
@@ -292,7 +303,7 @@ impl Player {
         self.scans += 1;
     }
 
-    fn assign(&mut self, assignments: &[Assignment]) -> Result<(), RunError> {
+    fn assign<'a>(&mut self, assignments: impl IntoIterator<Item = &'a Assignment>) -> Result<(), RunError> {
         for assignment in assignments {
             let spot = &assignment.address;
             let present = self.read(spot)?;
