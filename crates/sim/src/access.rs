@@ -214,6 +214,10 @@ impl Machine {
     }
 
     fn write(&mut self, at: u32, word: u16) {
+        if self.clock_refuses(at, word) {
+            return;
+        }
+        let word = self.key_latches(at, self.word(at), word);
         let at = at as usize;
         if let Some(place) = self.state.mem.get_mut(at) {
             *place = word;

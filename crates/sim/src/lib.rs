@@ -36,6 +36,7 @@ mod layout;
 mod machine;
 mod op;
 mod options;
+mod outside;
 mod peer;
 mod program;
 pub mod scenario;

@@ -15,7 +15,7 @@ use crate::fault::code;
 use crate::layout::Layout;
 use crate::op::*;
 use crate::program::{Approximation, Refusal, Site};
-use crate::{Options, Unsupported};
+use crate::{Options, Unsupported, outside};
 
 /// Branches nest at most this deep in the engine; the editors allow four levels.
 const MAX_NESTING: u32 = 60;
@@ -25,6 +25,14 @@ const MAX_OPS: usize = 4_000_000;
 
 /// Compiles an image.
 pub(crate) fn compile(image: &Image, options: &Options) -> Result<(Compiled, Vec<Approximation>), Vec<Refusal>> {
+    if let Some((image, named)) = outside::resolve(image) {
+        let (compiled, mut approximations) = compile(&image, options)?;
+        for name in named {
+            let why = format!("{name}: where the processor keeps this bit is not known: it has a place of its own");
+            approximations.push(Approximation { site: None, why });
+        }
+        return Ok((compiled, approximations));
+    }
     let family = family_of(image, options);
     let traits = Traits::of(family);
     let tables = tables::tables(image, options, family);

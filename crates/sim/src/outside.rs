@@ -1,0 +1,112 @@
+//! What the controller itself makes of data that an operator or another device writes: the clock refuses
+//! dates that do not exist, and keys of the data access tool toggle their latches. And the names of
+//! bits whose place in their function file nobody has published.
+
+use ladder::{Address, Element, FileType, Image, Operand, Place, Series};
+
+use crate::Machine;
+use crate::family::Lineage;
+
+/// Members known by name only (1200UM 6-2, 1500UM chapter 5): type, name, and the word and bit the
+/// simulator keeps them at. The data model has no such places, so that nothing is written to a
+/// project file or printed on the strength of them.
+const NAMED: [(FileType, &str, u16, u16); 6] = [
+    (FileType::RTC, "DS", 7, 0),
+    (FileType::RTC, "BL", 7, 1),
+    (FileType::DAT, "F1P", 127, 0),
+    (FileType::DAT, "F1L", 127, 1),
+    (FileType::DAT, "F2P", 127, 2),
+    (FileType::DAT, "F2L", 127, 3),
+];
+
+/// Least and greatest value of the words of RTC:0 from the year to the second (1200 3-3).
+const CLOCK: [(u16, u16); 6] = [(1998, 2097), (1, 12), (1, 31), (0, 23), (0, 59), (0, 59)];
+
+/// The place of a text such as `RTC:0/BL`.
+pub(crate) fn named(text: &str) -> Option<Address> {
+    let (element, name) = text.split_once('/')?;
+    let mut address = Address::parse(element).ok().filter(|address| address.word.is_none())?;
+    let row = NAMED.iter().find(|row| row.0 == address.file_type && row.1.eq_ignore_ascii_case(name))?;
+    address.word = Some(row.2);
+    address.bit = Some(Place::Number(row.3));
+    Some(address)
+}
+
+/// An address of the data model, or one of the names above.
+pub(crate) fn address(text: &str) -> Result<Address, ladder::AddressError> {
+    Address::parse(text).or_else(|why| named(text).ok_or(why))
+}
+
+/// The image with named bits in place of their texts, and the texts; `None` when it has none.
+pub(crate) fn resolve(image: &Image) -> Option<(Image, Vec<String>)> {
+    let text = |operand: &Operand| match operand {
+        Operand::Text(text) => named(text).is_some(),
+        _ => false,
+    };
+    let mut instructions = image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions());
+    if !instructions.any(|instruction| instruction.operands.iter().any(text)) {
+        return None;
+    }
+    let mut image = image.clone();
+    let mut found = Vec::new();
+    for rung in image.program_files.iter_mut().flat_map(|file| &mut file.rungs) {
+        replace(&mut rung.series, &mut found);
+    }
+    found.sort();
+    found.dedup();
+    Some((image, found))
+}
+
+fn replace(series: &mut Series, found: &mut Vec<String>) {
+    for element in series {
+        match element {
+            Element::Instruction(instruction) => {
+                for operand in &mut instruction.operands {
+                    if let Operand::Text(text) = operand
+                        && let Some(address) = named(text)
+                    {
+                        found.push(std::mem::take(text));
+                        *operand = Operand::Address(address);
+                    }
+                }
+            }
+            Element::Branch(branch) => branch.legs.iter_mut().for_each(|leg| replace(leg, found)),
+        }
+    }
+}
+
+impl Machine {
+    /// A word that the clock does not take over: a month 13. Zeros stand for a module that is not there.
+    pub(crate) fn clock_refuses(&self, at: u32, word: u16) -> bool {
+        let layout = &self.program.layout;
+        let clock = layout.file(FileType::RTC, 0).and_then(|file| layout.files.get(file));
+        let Some(offset) = clock.and_then(|info| at.checked_sub(info.start)) else { return false };
+        self.program.traits.lineage == Lineage::Mx
+            && word != 0
+            && CLOCK.get(offset as usize).is_some_and(|(least, most)| !(*least..=*most).contains(&word))
+    }
+
+    /// A key of the data access tool that goes down toggles the latch beside it.
+    pub(crate) fn key_latches(&self, at: u32, before: u16, after: u16) -> u16 {
+        let layout = &self.program.layout;
+        let keys = layout.file(FileType::DAT, 0).and_then(|file| layout.files.get(file));
+        let is_keys = keys.is_some_and(|info| at == info.start + u32::from(NAMED[2].2));
+        // The latch is the bit above its key.
+        if is_keys { after ^ (after & !before & 0b0101) << 1 } else { after }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_have_no_place_in_the_data_model() {
+        for (file_type, name, ..) in NAMED {
+            let text = format!("{file_type}:0/{name}");
+            assert!(Address::parse(&text).is_err(), "{text}");
+            assert!(address(&text.to_lowercase()).is_ok(), "{text}");
+        }
+        assert!(address("RTC:0/XX").is_err() && address("N7:0/BL").is_err() && address("RTC:0.1/BL").is_err());
+    }
+}
