@@ -19,7 +19,7 @@ fn counter(data: &[(&str, i64)]) -> Bench {
     ];
     let data: Vec<(&str, i64)> = set_up.iter().chain(data).copied().collect();
     let mut bench =
-        Bench::files(MicroLogix1200, &[(2, "XIC I:0/0 OTL HSC:0/SP"), (4, COUNT)], &data, Choices::default());
+        Bench::files(MicroLogix1200, &[(2, "XIC I:0/4 OTL HSC:0/SP"), (4, COUNT)], &data, Choices::default());
     bench.scans(1);
     assert_eq!(bench.fault(), None);
     bench
@@ -35,16 +35,32 @@ fn a_counter_rolls_over_at_its_limits() {
 }
 
 #[test]
+fn inputs_of_the_first_counter_count() {
+    for (mode, presses, found) in [
+        (0, [("I:0/0", 3), ("I:0/1", 1)], 3),
+        (2, [("I:0/1", 1), ("I:0/0", 3)], -3),
+        (4, [("I:0/0", 3), ("I:0/1", 1)], 2),
+        (6, [("I:0/0", 3), ("I:0/1", 1)], 0),
+    ] {
+        let mut bench = counter(&[("HSC:0.MOD", mode)]);
+        for (input, count) in presses {
+            bench.edges(input, count);
+        }
+        bench.expect(&[("HSC:0.ACC", found)]);
+    }
+}
+
+#[test]
 fn limits_act_when_sp_rises() {
     let mut bench = counter(&[("HSC:0.ACC", 500)]);
     bench.set("HSC:0.OVF", 950).scans(1);
     bench.machine.pulses(0, 501);
     bench.expect(&[("HSC:0.ACC", -1000)]);
-    bench.set("HSC:0.ACC", 940).set("I:0/0", 1).scans(2);
+    bench.set("HSC:0.ACC", 940).set("I:0/4", 1).scans(2);
     bench.machine.pulses(0, 11);
     bench.expect(&[("HSC:0.ACC", -1000)]);
     let mut bench = counter(&[]);
-    bench.set("HSC:0.OVF", 400).set("HSC:0.HIP", 500).set("I:0/0", 1).scans(2);
+    bench.set("HSC:0.OVF", 400).set("HSC:0.HIP", 500).set("I:0/4", 1).scans(2);
     assert_eq!(bench.fault(), Some(0x37));
     bench.expect(&[("HSC:0/ED", 1)]);
 }

@@ -1,7 +1,7 @@
 //! High-speed counters and event inputs of MicroLogix 1100 to 1500.
 //!
-//! Pulses and events come from the caller; event inputs are also seen where a terminal changes between
-//! two scans. Which bits of the function file tell direction and causes is not published, so those do
+//! Pulses and events come from the caller; pulses of counter 0 and event inputs are also seen where a
+//! terminal changes between two scans. Which bits of the function file tell direction and causes is not published, so those do
 //! not change.
 
 use instr::exec::counter::{limits_are_valid, pulse_down, pulse_up};
@@ -14,6 +14,7 @@ use crate::machine::Mode;
 
 const ERROR_CODE: u32 = 1;
 const MASKS: u32 = 3;
+const MODE: u32 = 4;
 const ACC: u32 = 5;
 const HIGH: u32 = 7;
 const LOW: u32 = 9;
@@ -92,6 +93,9 @@ impl Core<'_> {
         }
         let now = self.s.inputs.first().copied().unwrap_or(0);
         let changed = now ^ std::mem::replace(&mut self.s.event_inputs, now);
+        if changed & 3 != 0 {
+            self.count_inputs(changed & now, now, watch);
+        }
         for number in 0..8 {
             if changed == 0 {
                 break;
@@ -103,6 +107,24 @@ impl Core<'_> {
             if flags & EVENT_ENABLED != 0 && edge && self.executing() {
                 self.function_file_interrupt(at, watch);
             }
+        }
+    }
+
+    /// Inputs 0 and 1 are those of counter 0; `risen` are the inputs that went on. How they count is its
+    /// mode (recalled from the manuals): input 0 up; the same with input 1 for down; input 0 up and
+    /// input 1 down. Quadrature needs more edges than a scan shows.
+    fn count_inputs<W: Watch>(&mut self, risen: u16, now: u16, watch: &mut W) {
+        let Some(at) = self.element(FileType::HSC, 0) else { return };
+        let (first, second) = (risen & 1 != 0, risen & 2 != 0);
+        let mode = self.word(at + MODE);
+        let counts = match mode {
+            0 | 1 => [first.then_some(1), None],
+            2 | 3 => [first.then_some(if now & 2 != 0 { -1 } else { 1 }), None],
+            4 | 5 => [first.then_some(1), second.then_some(-1)],
+            _ => [None, None],
+        };
+        for count in counts.into_iter().flatten() {
+            self.pulses(0, count, watch);
         }
     }
 
