@@ -243,36 +243,42 @@ impl Compiler<'_> {
         let image = self.image;
         for instruction in image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions()) {
             let name = instruction.mnemonic.name().unwrap_or("");
-            // Operand of the element, then of the values of its words 1 and 2.
-            let (element, first, second) = match name {
-                "TON" | "TOF" | "RTO" => (0, 2, Some(3)),
-                "CTU" | "CTD" => (0, 1, Some(2)),
-                "BSL" | "BSR" => (1, 3, None),
-                "FFL" | "LFL" | "FFU" | "LFU" => (2, 3, Some(4)),
-                "SQO" | "SQC" => (3, 4, Some(5)),
-                "SQL" => (2, 3, Some(4)),
-                "ARD" | "ARL" | "AWA" | "AWT" => (2, 3, None),
-                _ => continue,
-            };
-            let location = instruction.operands.get(element).and_then(Operand::address);
-            let Some(location) = location.and_then(|address| self.layout.locate(address)) else { continue };
-            if !done.insert(location.word) {
-                continue;
-            }
-            let at = location.word as usize;
-            if matches!(name, "TON" | "TOF" | "RTO")
-                && let Some(base) = time_base(instruction.operands.get(1))
-                && let Some(word) = data.get_mut(at)
-            {
-                *word = *word & !0x0300 | base.control_bits();
-            }
-            for (offset, operand) in [(1, Some(first)), (2, second)] {
-                let value = operand.and_then(|index| instruction.operands.get(index)).and_then(Operand::constant);
-                if let (Some(value), Some(word)) = (value.and_then(|c| c.as_integer()), data.get_mut(at + offset)) {
-                    *word = value as u16;
+            for (element, first, second) in parameter_operands(name) {
+                let location = instruction.operands.get(*element).and_then(Operand::address);
+                let Some(location) = location.and_then(|address| self.layout.locate(address)) else { continue };
+                if !done.insert(location.word) {
+                    continue;
+                }
+                let at = location.word as usize;
+                if matches!(name, "TON" | "TOF" | "RTO")
+                    && let Some(base) = time_base(instruction.operands.get(1))
+                    && let Some(word) = data.get_mut(at)
+                {
+                    *word = *word & !0x0300 | base.control_bits();
+                }
+                for (offset, operand) in [(1, Some(*first)), (2, *second)] {
+                    let value = operand.and_then(|index| instruction.operands.get(index)).and_then(Operand::constant);
+                    if let (Some(value), Some(word)) = (value.and_then(|c| c.as_integer()), data.get_mut(at + offset)) {
+                        *word = value as u16;
+                    }
                 }
             }
         }
+    }
+}
+
+/// Elements whose parameters an instruction shows: the operand of the element, then those of the
+/// values of its words 1 and 2.
+fn parameter_operands(name: &str) -> &'static [(usize, usize, Option<usize>)] {
+    match name {
+        "TON" | "TOF" | "RTO" => &[(0, 2, Some(3))],
+        "CTU" | "CTD" => &[(0, 1, Some(2))],
+        "BSL" | "BSR" => &[(1, 3, None)],
+        "FFL" | "LFL" | "FFU" | "LFU" | "SQL" => &[(2, 3, Some(4))],
+        "SQO" | "SQC" => &[(3, 4, Some(5))],
+        "FBC" | "DDT" => &[(3, 4, Some(5)), (6, 7, Some(8))],
+        "ARD" | "ARL" | "AWA" | "AWT" => &[(2, 3, None)],
+        _ => &[],
     }
 }
 
