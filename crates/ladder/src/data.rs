@@ -65,14 +65,12 @@ impl TimeBase {
         }
     }
 
-    /// Reads the spelling of a box or of a printed data table (`.01`, `1.0`, `1`).
+    /// Reads the spelling of a box or of a printed data table (`.01`, `0.010`, `1.0`, `1`).
     pub fn from_text(text: &str) -> Option<TimeBase> {
-        match text.trim().strip_prefix('0').unwrap_or(text.trim()) {
-            ".001" => Some(TimeBase::Millisecond),
-            ".01" => Some(TimeBase::Centisecond),
-            "1.0" | "1" => Some(TimeBase::Second),
-            _ => None,
-        }
+        let seconds: f64 = text.trim().parse().ok()?;
+        [TimeBase::Millisecond, TimeBase::Centisecond, TimeBase::Second]
+            .into_iter()
+            .find(|base| base.text().parse() == Ok(seconds))
     }
 
     /// Milliseconds per tick.
