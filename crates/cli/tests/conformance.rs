@@ -10,6 +10,9 @@ use sim::scenario::Scenario;
 /// What the suite must at least hold.
 const LEAST: usize = 600;
 
+/// Worked examples the suite is built around; notes name them by number.
+const EXAMPLES: u32 = 135;
+
 /// Tags of evidence and the documents they stand for.
 const DOCUMENTS: &[(&str, &str)] = &[
     ("SLC", "SLC 500 Instruction Set Reference Manual, 1747-RM001G"),
@@ -107,6 +110,38 @@ fn every_case_names_evidence_and_expects_something() {
         let runs = scenario.steps.iter().any(|step| step.set.is_empty() || !step.expect.is_empty());
         assert!(expects || runs, "{place}: nothing is expected");
     }
+}
+
+/// The numbers a note names: `worked examples 7, 8 and 9`, `worked examples 1 to 4`.
+fn examples(note: &str) -> BTreeSet<u32> {
+    let mut found = BTreeSet::new();
+    for (at, word) in note.match_indices("worked example") {
+        let mut range = false;
+        let list = note.get(at + word.len()..).unwrap_or("").trim_start_matches('s');
+        for word in list.split([' ', ',']).filter(|word| !word.is_empty()) {
+            match (word.trim_end_matches([':', ';']).parse::<u32>(), word) {
+                (Ok(number), _) => {
+                    let first = if range { found.last().copied().unwrap_or(number) } else { number };
+                    found.extend(first..=number);
+                    if word.ends_with([':', ';']) {
+                        break;
+                    }
+                }
+                (_, "and" | "to") => range = word == "to",
+                _ => break,
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_worked_example_has_a_case() {
+    let notes = suite().into_iter().filter_map(|(_, _, scenario)| scenario.note);
+    let named: BTreeSet<u32> = notes.flat_map(|note| examples(&note)).collect();
+    let missing: Vec<u32> = (1..=EXAMPLES).filter(|number| !named.contains(number)).collect();
+    assert!(missing.is_empty(), "no case names worked examples {missing:?}");
+    assert!(named.last() <= Some(&EXAMPLES), "{named:?}");
 }
 
 #[test]
