@@ -7,6 +7,7 @@
 //!
 //! Like every dialect this crate opens no file and reads no clock.
 
+pub mod circuit;
 pub mod diagnostic;
 pub mod instruction;
 pub mod program;
