@@ -16,6 +16,9 @@ const SCAN: Duration = Duration::from_millis(10);
 /// Scans one step may ask for: more is asked by mistake only.
 const MOST_SCANS: u64 = 10_000_000;
 
+/// Scans all steps together may ask for.
+const MOST_IN_ALL: u64 = 100_000_000;
+
 const TOP: &[&str] = &["name", "source", "note", "program", "ladder", "family", "scan", "step"];
 const STEP: &[&str] = &["note", "mode", "set", "edges", "scans", "run", "fault", "expect"];
 
@@ -110,7 +113,7 @@ impl Reader<'_> {
         if scan.is_zero() {
             return Err(ScenarioError { line: 1, key: "scan".into(), message: "expected a time above 0".into() });
         }
-        let steps = match table.get("step") {
+        let steps: Vec<Step> = match table.get("step") {
             None => Vec::new(),
             Some(value) => match value.get_ref() {
                 DeValue::Array(steps) => {
@@ -120,6 +123,14 @@ impl Reader<'_> {
                 _ => return Err(self.expected(value, "step", "steps, each below a line [[step]]")),
             },
         };
+        let mut total = 0;
+        for (index, step) in steps.iter().enumerate() {
+            total += scans_of(step, scan);
+            if total > MOST_IN_ALL {
+                let message = format!("with this step the scenario has more than {MOST_IN_ALL} scans");
+                return Err(ScenarioError { line: step.line, key: format!("step[{}]", index + 1), message });
+            }
+        }
         if steps.is_empty() {
             let message = "expected at least one [[step]]".to_owned();
             return Err(ScenarioError { line: 1, key: "step".into(), message });
@@ -317,6 +328,16 @@ impl Reader<'_> {
     }
 }
 
+/// Scans a step asks for; each part is bounded already.
+fn scans_of(step: &Step, scan: Duration) -> u64 {
+    let length = match step.length {
+        Length::None => 0,
+        Length::Scans(count) => count,
+        Length::For(time) => u64::try_from(time.as_nanos() / scan.as_nanos().max(1)).unwrap_or(MOST_SCANS),
+    };
+    step.edges.as_ref().map_or(0, |edges| 2 * edges.count) + length
+}
+
 fn whole(value: &DeValue<'_>) -> Option<i64> {
     match value {
         DeValue::Integer(number) => i64::from_str_radix(&number.as_str().replace('_', ""), number.radix()).ok(),
@@ -387,6 +408,7 @@ mode   = "program-run"
     #[test]
     fn errors_name_line_and_key() {
         let head = "ladder = \"OTE B3:0/0\"\n";
+        let many = "[[step]]\nscans = 10000000\n\n\n".repeat(2000);
         for (text, line, key) in [
             ("family = \"slc-9\"\n[[step]]\n", 2, "family"),
             ("scan = \"10\"\n[[step]]\n", 2, "scan"),
@@ -400,6 +422,7 @@ mode   = "program-run"
             ("[[step]]\nfault = 20\n", 3, "step[1].fault"),
             ("[[step]]\nedges = { count = 3 }\n", 3, "step[1].edges"),
             ("[[step]]\nset = 3\nset = 4\n", 4, ""),
+            (many.as_str(), 42, "step[11]"),
             ("", 1, "step"),
         ] {
             let error = Scenario::parse(&format!("{head}{text}")).expect_err(text);

@@ -215,6 +215,10 @@ fn address(spot: &Spot<String>) -> Result<Address, RunError> {
     outside::address(&spot.value).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
 }
 
+/// Instructions a scenario may execute, minutes of work: scans are bounded as they are read, but those of
+/// a program that loops up to the watchdog take long.
+const MOST_INSTRUCTIONS: u64 = 20_000_000_000;
+
 /// A machine with what is counted while a scenario runs on it.
 struct Player {
     machine: Machine,
@@ -248,17 +252,17 @@ impl Player {
             for _ in 0..edges.count {
                 for level in [false, true] {
                     self.write(&edges.bit, &Value::Bit(level))?;
-                    self.scan();
+                    self.scan(step)?;
                 }
             }
         }
         match step.length {
             Length::None => {}
-            Length::Scans(count) => (0..count).for_each(|_| self.scan()),
+            Length::Scans(count) => (0..count).try_for_each(|_| self.scan(step))?,
             Length::For(time) => {
                 let end = self.machine.now() + time;
                 while self.machine.now() < end {
-                    self.scan();
+                    self.scan(step)?;
                 }
             }
         }
@@ -297,10 +301,14 @@ impl Player {
         self.failures.push(Failure { step: number, note, line, scan, time, found });
     }
 
-    fn scan(&mut self) {
+    fn scan(&mut self, step: &Step) -> Result<(), RunError> {
         let dt = if std::mem::take(&mut self.entered) { Duration::ZERO } else { self.dt };
         self.machine.scan(dt);
         self.scans += 1;
+        if self.machine.instructions() > MOST_INSTRUCTIONS {
+            return Err(at(step.line, format!("the scenario executes more than {MOST_INSTRUCTIONS} instructions")));
+        }
+        Ok(())
     }
 
     fn assign<'a>(&mut self, assignments: impl IntoIterator<Item = &'a Assignment>) -> Result<(), RunError> {
