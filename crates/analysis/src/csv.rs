@@ -12,7 +12,7 @@ use ::csv::{Terminator, Writer, WriterBuilder};
 use ladder::{Address, FileType, Target, TimeBase};
 
 use crate::{
-    Access, Certainty, CrossReference, DataValues, ElementKind, InstructionValues, Reference, TimerCounter,
+    Access, Certainty, CrossReference, DataValues, ElementKind, InstructionValues, LeftOut, Reference, TimerCounter,
     TimerReport, Unresolved, Usage,
 };
 
@@ -82,8 +82,10 @@ const XREF_COLUMNS: [&str; 15] = [
 pub fn timers(report: &TimerReport, writer: impl Write) -> io::Result<()> {
     let mut table = start(writer);
     table.write_record(TIMER_COLUMNS)?;
+    // Findings are in the order of the elements they are about.
+    let mut rest = report.findings.iter().peekable();
     for element in &report.elements {
-        let found = report.findings.iter().filter(|finding| finding.address == element.address);
+        let found = std::iter::from_fn(|| rest.next_if(|finding| finding.address == element.address));
         let findings = joined(found.map(|finding| finding.kind.as_str().to_owned()));
         table.write_record(timer_row(element, findings))?;
     }
@@ -95,7 +97,8 @@ pub fn timers(report: &TimerReport, writer: impl Write) -> io::Result<()> {
 
 /// Writes one row per address and access, addresses as in [`CrossReference::all`]; then one row per
 /// operand or instruction about which nothing can be said, and per limit of the cross reference, with
-/// the reason in the column `note`.
+/// the reason in the column `note`. Where an address has more accesses than are listed, see
+/// [`crate::MAX_LISTED`], a row with such a note counts them.
 ///
 /// # Errors
 /// Only those of `writer`.
@@ -109,6 +112,14 @@ pub fn xref(xref: &CrossReference<'_>, writer: impl Write) -> io::Result<()> {
         for access in &group.accesses {
             table.write_record(access_row(&address, &symbol, &description, access))?;
         }
+        let note = match group.left_out {
+            Some(0) => continue,
+            Some(more) => format!("{more} more accesses are not listed"),
+            None => "its accesses are not listed".to_owned(),
+        };
+        let mut row = empty_xref_row(&note);
+        [row[0], row[1], row[2]] = [address, symbol, description];
+        table.write_record(row)?;
     }
     for unresolved in xref.unresolved() {
         table.write_record(unresolved_row(unresolved))?;
@@ -176,8 +187,10 @@ fn timer_row(element: &TimerCounter, findings: String) -> Vec<String> {
     ]);
     row.extend(BITS.map(|name| bit(data, element.kind, name)));
     // A reset always clears the same parts: naming them says nothing.
-    row.extend([references(&element.read_by, true), references(&element.reset_by, false)]);
-    row.push(references(&element.written_by, true));
+    let more = |of: fn(LeftOut) -> usize| element.left_out.map(of);
+    row.push(references(&element.read_by, true, more(|it| it.read_by)));
+    row.push(references(&element.reset_by, false, more(|it| it.reset_by)));
+    row.push(references(&element.written_by, true, more(|it| it.written_by)));
     row.push(findings);
     row
 }
@@ -198,17 +211,26 @@ fn bit(data: Option<DataValues>, kind: ElementKind, name: &str) -> String {
     number(found.map(|(_, set)| u8::from(set)))
 }
 
-/// `2:14 XIC DN; may 3:0 COP`.
-fn references(all: &[Reference], with_members: bool) -> String {
-    joined(all.iter().map(|it| {
-        let may = if it.certainty == Certainty::May { "may " } else { "" };
-        let mut text = format!("{may}{} {}", it.location, it.mnemonic);
-        for member in it.members.iter().filter(|_| with_members) {
-            text.push(' ');
-            text.push_str(member);
-        }
-        text
-    }))
+/// `2:14 XIC DN; may 3:0 COP`; behind them how many are not listed.
+fn references(all: &[Reference], with_members: bool, left_out: Option<usize>) -> String {
+    let more = match left_out {
+        Some(0) => None,
+        Some(more) => Some(format!("and {more} more")),
+        None => Some("not looked up".to_owned()),
+    };
+    joined(
+        all.iter()
+            .map(|it| {
+                let may = if it.certainty == Certainty::May { "may " } else { "" };
+                let mut text = format!("{may}{} {}", it.location, it.mnemonic);
+                for member in it.members.iter().filter(|_| with_members) {
+                    text.push(' ');
+                    text.push_str(member);
+                }
+                text
+            })
+            .chain(more),
+    )
 }
 
 fn elsewhere_row(values: &InstructionValues) -> Vec<String> {

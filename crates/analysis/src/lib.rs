@@ -10,6 +10,7 @@
 //! * [`CallGraph`]: which program file runs because of which rung or interrupt.
 //! * [`Coverage`]: how much of the program is documented.
 
+mod budget;
 mod calls;
 mod coverage;
 pub mod csv;
@@ -18,14 +19,15 @@ mod space;
 mod timers;
 mod xref;
 
+pub use budget::{MAX_LISTED, MAX_ROWS};
 pub use calls::{Call, CallGraph, CalledFile, Entry, EntryKind, Label, Target};
 pub use coverage::Coverage;
 pub use location::{Location, instructions};
 pub use timers::{
-    DataValues, ElementKind, InstructionValues, Reference, TimerCounter, TimerFinding, TimerFindingKind, TimerReport,
-    Usage,
+    DataValues, ElementKind, InstructionValues, LeftOut, Reference, TimerCounter, TimerFinding, TimerFindingKind,
+    TimerReport, Usage,
 };
 pub use xref::{
-    Access, Certainty, CrossReference, Finding, FindingKind, Found, Group, Level, Note, Reason, Through, Unresolved,
-    UnresolvedKind,
+    Access, Certainty, CrossReference, Finding, FindingKind, Findings, Found, Group, Level, Note, Reason, Through,
+    Unresolved, UnresolvedKind,
 };

@@ -56,6 +56,20 @@ pub struct TimerCounter {
     pub reset_by: Vec<Reference>,
     /// Other writes: to a preset, a copy over the element.
     pub written_by: Vec<Reference>,
+    /// References beyond those listed, see [`crate::MAX_LISTED`]; `None` where they were not even looked
+    /// up. [`TimerReport::complete`] gives all of them.
+    pub left_out: Option<LeftOut>,
+}
+
+/// How many references are not listed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Of [`TimerCounter::read_by`].
+    pub read_by: usize,
+    /// Of [`TimerCounter::reset_by`].
+    pub reset_by: usize,
+    /// Of [`TimerCounter::written_by`].
+    pub written_by: usize,
 }
 
 impl TimerCounter {

@@ -18,16 +18,20 @@ mod symbols;
 
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
+use std::ops::ControlFlow;
 
 use instr::{Kind, Role};
 use ladder::{Address, Documentation, Family, FileType, Image, Mnemonic, Operand, Value};
 
+use crate::budget::Budget;
 use crate::location::Location;
 use crate::space::{Area, Key};
-use collect::{Collected, Use, collect};
-use index::{Index, Span};
+pub(crate) use collect::Use;
+use collect::{Collected, Spelled, collect};
+use index::Index;
+pub(crate) use index::Span;
 
-pub use findings::{Finding, FindingKind, Reason};
+pub use findings::{Finding, FindingKind, Findings, Reason};
 pub use query::Found;
 pub(crate) use symbols::Symbols;
 
@@ -38,7 +42,7 @@ pub struct CrossReference<'a> {
     data: Collected<'a>,
     index: Index,
     /// Stretches of uses whose address is decided at run time, by that address as it is written.
-    computed: HashMap<Address, Vec<Span>>,
+    computed: HashMap<Spelled<'a>, Vec<Span>>,
 }
 
 /// An access to an address, seen from that address.
@@ -229,6 +233,9 @@ pub struct Group<'x> {
     pub address: Address,
     /// Definite accesses first, then the others, each in program order.
     pub accesses: Vec<Access<'x>>,
+    /// Accesses beyond those listed, see [`crate::MAX_LISTED`]; `None` where they were not even looked
+    /// up. [`CrossReference::of`] gives all of them.
+    pub left_out: Option<usize>,
 }
 
 impl<'a> CrossReference<'a> {
@@ -241,13 +248,13 @@ impl<'a> CrossReference<'a> {
         if index_can_leave_files(image, &data) {
             data.notes.push(Note::IndexLeavesFiles);
         }
-        let mut computed: HashMap<Address, Vec<Span>> = HashMap::new();
+        let mut computed: HashMap<Spelled<'a>, Vec<Span>> = HashMap::new();
         for span in &data.spans {
             let address = data.uses.get(span.by).map(|it| &it.address).filter(|address| is_computed(address));
             if let Some(address) = address {
                 match computed.get_mut(&**address) {
                     Some(spans) => spans.push(*span),
-                    None => drop(computed.insert((**address).clone(), vec![*span])),
+                    None => drop(computed.insert(address.clone(), vec![*span])),
                 }
             }
         }
@@ -257,21 +264,25 @@ impl<'a> CrossReference<'a> {
     /// Every access that touches some of what an address names. `#` before the address is not looked
     /// at; of an address with brackets only the accesses written exactly so.
     pub fn of(&self, address: &Address) -> Vec<Access<'_>> {
-        if address.indirections().next().is_some() {
-            return self.written_as(address);
-        }
-        match self.data.spaces.find_place(address) {
-            Some(placed) => self.accesses(placed.area),
-            // No instruction leads into that file.
-            None => Vec::new(),
-        }
+        let budget = &mut Budget::unlimited();
+        let found = if address.indirections().next().is_some() {
+            self.accesses(address, None, budget)
+        } else {
+            match self.data.spaces.find_place(address) {
+                Some(placed) => self.accesses(address, Some(placed.area), budget),
+                // No instruction leads into that file.
+                None => None,
+            }
+        };
+        found.map_or_else(Vec::new, |(accesses, _)| accesses)
     }
 
     /// Every address the program names with its accesses, files and addresses in ascending order;
     /// in each file the addresses that are decided at run time come last.
     ///
-    /// Each group is made when it is asked for: all of them together can be larger than the program
-    /// by the square, where many addresses lie under many copies of a whole file.
+    /// Each group is made when it is asked for, and together they list at most [`crate::MAX_ROWS`]
+    /// accesses: all could be larger than the program by the square, where many addresses lie under
+    /// many copies of a whole file.
     pub fn all(&self) -> impl Iterator<Item = Group<'_>> {
         let mut addresses: Vec<(GroupKey, &Address, Option<Area>)> = Vec::new();
         for named in &self.data.named {
@@ -281,13 +292,15 @@ impl<'a> CrossReference<'a> {
             addresses.push((group_key(address, None), address, None));
         }
         addresses.sort_by(|a, b| a.0.cmp(&b.0));
-        addresses.into_iter().map(|(_, address, area)| Group {
-            address: address.clone(),
-            accesses: match area {
-                Some(area) => self.accesses(area),
-                None => self.written_as(address),
-            },
-        })
+        let mut budget = Budget::of_report();
+        addresses.into_iter().map(move |(_, address, area)| self.group(address, area, &mut budget))
+    }
+
+    /// The accesses of an address as far as the budget goes; without an area only those written so.
+    fn group(&self, address: &Address, area: Option<Area>, budget: &mut Budget) -> Group<'_> {
+        let found = self.accesses(address, area, budget);
+        let (accesses, left_out) = found.map_or((Vec::new(), None), |(accesses, more)| (accesses, Some(more)));
+        Group { address: address.clone(), accesses, left_out }
     }
 
     /// Addresses that operands name, ascending, without those that are decided at run time.
@@ -330,19 +343,27 @@ impl<'a> CrossReference<'a> {
         all.filter(move |address| seen.insert(*address))
     }
 
-    fn written_as(&self, address: &Address) -> Vec<Access<'_>> {
-        self.to_accesses(&mut self.computed.get(address).cloned().unwrap_or_default())
+    /// The first accesses, and how many more there are; `None` when the budget is spent.
+    fn accesses(&self, address: &Address, area: Option<Area>, budget: &mut Budget) -> Option<(Vec<Access<'_>>, usize)> {
+        let mut spans = match area {
+            Some(area) => self.overlapping(area, budget)?,
+            None => self.computed.get(address).cloned().unwrap_or_default(),
+        };
+        Some(self.to_accesses(&mut spans, budget))
     }
 
-    fn accesses(&self, area: Area) -> Vec<Access<'_>> {
-        let mut spans = self.overlapping(area);
-        self.to_accesses(&mut spans)
-    }
-
-    pub(crate) fn overlapping(&self, area: Area) -> Vec<Span> {
+    /// All stretches that meet an area; `None` when the budget is spent.
+    pub(crate) fn overlapping(&self, area: Area, budget: &mut Budget) -> Option<Vec<Span>> {
+        if budget.is_spent() {
+            return None;
+        }
         let mut spans = Vec::new();
-        self.index.overlapping(&self.data.spans, &self.data.spaces, area, |span| spans.push(*span));
-        spans
+        let compared = self.index.overlapping(&self.data.spans, &self.data.spaces, area, |span| {
+            spans.push(*span);
+            ControlFlow::Continue(())
+        });
+        budget.spend(compared);
+        Some(spans)
     }
 
     /// For each element of a file whether some access certainly touches it, ranges included.
@@ -369,6 +390,10 @@ impl<'a> CrossReference<'a> {
         touched.collect()
     }
 
+    pub(crate) fn overlap(&self, a: &Area, b: &Area) -> bool {
+        a.overlaps(b, self.data.spaces.stride(b.space))
+    }
+
     pub(crate) fn place(&self, address: &Address) -> Option<Area> {
         self.data.spaces.find_place(address).map(|placed| placed.area)
     }
@@ -382,30 +407,35 @@ impl<'a> CrossReference<'a> {
         self.data.uses.get(span.by)
     }
 
-    /// One access per operand, its stretches joined.
-    fn to_accesses(&self, spans: &mut [Span]) -> Vec<Access<'_>> {
+    /// One access per operand, its stretches joined; as many as the budget allows, and how many more.
+    fn to_accesses(&self, spans: &mut [Span], budget: &mut Budget) -> (Vec<Access<'_>>, usize) {
         spans.sort_by_key(|span| (span.by, span.area.first));
-        let mut all: Vec<Access<'_>> = spans
+        let mut all: Vec<(Certainty, &Use<'a>, &[Span])> = spans
             .chunk_by(|a, b| a.by == b.by)
             .filter_map(|spans| {
-                let it = self.data.uses.get(spans.first()?.by)?;
-                let texts: Vec<String> = spans.iter().map(|span| self.data.spaces.text(span.area)).collect();
-                Some(Access {
-                    location: it.location,
-                    mnemonic: it.mnemonic,
-                    operand: it.operand,
-                    address: &it.address,
-                    symbol: it.symbol,
-                    role: joined_role(spans.iter().map(|span| span.role)),
-                    certainty: certainty(spans.iter().any(|span| span.definite)),
-                    level: spans.iter().map(|span| span.level).max()?,
-                    through: it.through,
-                    touched: texts.join(", "),
-                })
+                let it = self.use_of(spans.first()?)?;
+                Some((certainty(spans.iter().any(|span| span.definite)), it, spans))
             })
             .collect();
-        all.sort_by_key(|access| (access.certainty, access.location));
-        all
+        all.sort_by_key(|(certainty, it, _)| (*certainty, it.location));
+        let listed = budget.rows(all.len());
+        let more = all.len() - listed;
+        let accesses = all.into_iter().take(listed).filter_map(|(certainty, it, spans)| {
+            let texts: Vec<String> = spans.iter().map(|span| self.data.spaces.text(span.area)).collect();
+            Some(Access {
+                location: it.location,
+                mnemonic: it.mnemonic,
+                operand: it.operand,
+                address: &it.address,
+                symbol: it.symbol,
+                role: joined_role(spans.iter().map(|span| span.role)),
+                certainty,
+                level: spans.iter().map(|span| span.level).max()?,
+                through: it.through,
+                touched: texts.join(", "),
+            })
+        });
+        (accesses.collect(), more)
     }
 }
 
@@ -434,13 +464,19 @@ pub(crate) fn joined_role(roles: impl Iterator<Item = Role>) -> Role {
 
 /// An instruction whose length is written by another one can reach further than it does now.
 fn widen_written_lengths(data: &Collected<'_>, index: &mut Index) {
+    let mut budget = Budget::of_report();
     for length in &data.lengths {
-        let mut written = false;
-        index.overlapping(&data.spans, &data.spaces, length.len, |span| {
-            let elsewhere = data.uses.get(span.by).is_some_and(|it| it.location != length.location);
-            // RES and the instructions of a control element leave LEN alone: they do not overlap it.
-            written |= elsewhere && span.role.writes();
-        });
+        // What nobody has time to look up may be written.
+        let mut written = budget.is_spent();
+        if !written {
+            let compared = index.overlapping(&data.spans, &data.spaces, length.len, |span| {
+                let elsewhere = data.uses.get(span.by).is_some_and(|it| it.location != length.location);
+                // RES and the instructions of a control element leave LEN alone: they do not overlap it.
+                written = elsewhere && span.role.writes();
+                if written { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            budget.spend(compared);
+        }
         if written {
             index.add(length.beyond);
         }

@@ -10,7 +10,7 @@ use support::{image, set};
 fn findings(image: &Image, kind: FindingKind) -> Vec<String> {
     let xref = CrossReference::build(image, &image.documentation);
     let found = xref.findings();
-    let of_kind = found.iter().filter(|finding| finding.kind == kind);
+    let of_kind = found.list.iter().filter(|finding| finding.kind == kind);
     of_kind
         .map(|finding| match finding.expected {
             Some(reason) => format!("({}: {})", finding.address, reason.as_str()),

@@ -1,62 +1,77 @@
 //! Collects timers and counters and puts the rungs of each together.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use instr::{Kind, Role};
 use ladder::{Address, FileType, Image, Instruction, Target, TimeBase, Value};
 
+use crate::budget::Budget;
 use crate::location::{Location, instructions};
 use crate::space::{Area, OPEN};
-use crate::xref::{Certainty, CrossReference, certainty, joined_role};
+use crate::xref::{Certainty, CrossReference, Span, Use, certainty, joined_role};
 
 use super::findings::findings;
-use super::{DataValues, ElementKind, InstructionValues, Reference, TimerCounter, TimerReport, Usage};
+use super::{
+    DataValues, ElementKind, InstructionValues, LeftOut, Reference, TimerCounter, TimerFinding, TimerReport, Usage,
+};
 
 impl TimerReport {
     /// Collects the timers and counters of an image from its cross reference, which must be of the
     /// same image.
     pub fn build(image: &Image, xref: &CrossReference<'_>) -> TimerReport {
         let mut report = TimerReport::default();
-        let mut addresses: BTreeSet<(u16, FileType, u16)> = BTreeSet::new();
-        let mut active = Vec::new();
+        let mut active: BTreeMap<Key, Vec<InstructionValues>> = BTreeMap::new();
         for (location, instruction) in instructions(image) {
             let Some((mnemonic, at)) = timing(instruction) else { continue };
             let operand = instruction.operands.get(at);
             let element = operand.and_then(|operand| xref.resolve(operand));
             let values = values_of(location, mnemonic, instruction);
             match element.filter(Address::is_direct).and_then(|address| key_of(&address)) {
-                Some(key) => {
-                    addresses.insert(key);
-                    active.push((key, values));
-                }
+                Some(key) => active.entry(key).or_default().push(values),
                 None => report.elsewhere.push(values),
             }
         }
-        active.sort_by_key(|(key, values)| (*key, values.location));
-        for address in xref.named() {
-            addresses.extend(key_of(address));
+        // Whether an instruction certainly touches the element.
+        let mut elements: BTreeMap<Key, bool> = active.keys().map(|key| (*key, true)).collect();
+        for key in xref.named().into_iter().filter_map(key_of) {
+            elements.insert(key, true);
         }
         for file in image.data_files.iter().filter(|f| matches!(f.file_type, FileType::T | FileType::C)) {
             let touched = xref.touched_elements(file.file_type, file.number, file.elements);
             for (element, touched) in (0..file.elements).zip(touched) {
                 let preset = file.element_words(element).and_then(|words| words.get(1)).is_some_and(|pre| *pre != 0);
                 if preset || touched {
-                    addresses.insert((file.number, file.file_type, element));
+                    *elements.entry((file.number, file.file_type, element)).or_default() |= touched;
                 }
             }
         }
-        for key in addresses {
-            let start = active.partition_point(|(other, _)| *other < key);
-            let own = active.iter().skip(start).take_while(|(other, _)| *other == key);
-            let element = element(image, xref, key, own.map(|(_, values)| values.clone()).collect());
-            report.findings.extend(findings(&element));
+        let mut budget = Budget::of_report();
+        for (key, touched) in elements {
+            let instructions = active.remove(&key).unwrap_or_default();
+            let (element, findings) = element(image, xref, key, instructions, touched, &mut budget);
+            report.findings.extend(findings);
             report.elements.push(element);
         }
         report
     }
+
+    /// Lists all references of the elements that are `wanted`, however many there are.
+    pub fn complete(&mut self, xref: &CrossReference<'_>, wanted: impl Fn(&TimerCounter) -> bool) {
+        for element in &mut self.elements {
+            if element.left_out != Some(LeftOut::default()) && wanted(element) {
+                let found = references(xref, &element.address, &mut Budget::unlimited());
+                let References { read_by, reset_by, written_by, left_out, .. } = found.unwrap_or_default();
+                (element.read_by, element.reset_by, element.written_by) = (read_by, reset_by, written_by);
+                element.left_out = Some(left_out);
+            }
+        }
+    }
 }
 
-fn key_of(address: &Address) -> Option<(u16, FileType, u16)> {
+/// File number, T or C, element.
+type Key = (u16, FileType, u16);
+
+fn key_of(address: &Address) -> Option<Key> {
     let timed = matches!(address.file_type, FileType::T | FileType::C);
     timed.then_some((address.file.number()?, address.file_type, address.element.number()?))
 }
@@ -95,9 +110,11 @@ fn values_of(location: Location, mnemonic: &'static str, instruction: &Instructi
 fn element(
     image: &Image,
     xref: &CrossReference<'_>,
-    (file, file_type, number): (u16, FileType, u16),
+    (file, file_type, number): Key,
     instructions: Vec<InstructionValues>,
-) -> TimerCounter {
+    touched: bool,
+    budget: &mut Budget,
+) -> (TimerCounter, Vec<TimerFinding>) {
     let address = Address::element(file_type, file, number);
     let data = match image.data_file(file_type, file).and_then(|file| file.value(number)) {
         Some(Value::Timer(t)) => Some(DataValues { control: t.control, base: t.base(), preset: t.pre, accum: t.acc }),
@@ -121,17 +138,18 @@ fn element(
             (any_text.and_then(|it| it.base), any_text.and_then(|it| it.preset), any_text.and_then(|it| it.accum))
         }
     };
-    let (read_by, reset_by, written_by) = references(xref, &address);
-    let definite = |all: &[Reference]| all.iter().any(|it| it.certainty == Certainty::Definite);
+    let uses = references(xref, &address, budget);
+    let definite = uses.as_ref().map_or(touched, |uses| uses.definite);
     let usage = if !instructions.is_empty() {
         Usage::Active
-    } else if definite(&read_by) || definite(&reset_by) || definite(&written_by) {
+    } else if definite {
         Usage::ReferencedOnly
     } else {
         Usage::ConfiguredOnly
     };
     let shown = xref.documentation().shown(&Target::Address(address.clone()), "");
-    TimerCounter {
+    let left_out = uses.as_ref().map(|uses| uses.left_out);
+    let mut element = TimerCounter {
         kind: if file_type == FileType::T { ElementKind::Timer } else { ElementKind::Counter },
         usage,
         symbol: shown.symbol,
@@ -141,43 +159,104 @@ fn element(
         base: base.filter(|_| file_type == FileType::T),
         preset,
         accum,
-        read_by,
-        reset_by,
-        written_by,
+        read_by: Vec::new(),
+        reset_by: Vec::new(),
+        written_by: Vec::new(),
+        left_out,
         address,
+    };
+    let found = findings(&element, uses.as_ref());
+    if let Some(uses) = uses {
+        (element.read_by, element.reset_by, element.written_by) = (uses.read_by, uses.reset_by, uses.written_by);
+    }
+    (element, found)
+}
+
+/// What the instructions do with an element, those that time or count with it aside.
+#[derive(Default)]
+pub(super) struct References {
+    pub(super) read_by: Vec<Reference>,
+    pub(super) reset_by: Vec<Reference>,
+    pub(super) written_by: Vec<Reference>,
+    pub(super) left_out: LeftOut,
+    /// Some of them certainly touches it.
+    definite: bool,
+    /// Something in `written_by` writes the preset.
+    pub(super) writes_preset: bool,
+    /// Something in `written_by` writes the accumulated value.
+    pub(super) writes_accum: bool,
+    /// Something in `written_by` reads it too.
+    pub(super) writes_what_it_reads: bool,
+}
+
+impl References {
+    pub(super) fn is_read(&self) -> bool {
+        !self.read_by.is_empty() || self.left_out.read_by > 0
+    }
+
+    pub(super) fn is_reset(&self) -> bool {
+        !self.reset_by.is_empty() || self.left_out.reset_by > 0
+    }
+
+    pub(super) fn is_written(&self) -> bool {
+        !self.written_by.is_empty() || self.left_out.written_by > 0
     }
 }
 
-/// Reads, resets and writes of an element by other instructions than those that time it.
-fn references(xref: &CrossReference<'_>, element: &Address) -> (Vec<Reference>, Vec<Reference>, Vec<Reference>) {
-    let (mut read, mut reset, mut written) = (Vec::new(), Vec::new(), Vec::new());
-    let Some(area) = xref.place(element) else { return (read, reset, written) };
-    let mut spans = xref.overlapping(area);
+/// Reads, resets and writes of an element by other instructions than those that time it: as many as
+/// the budget allows, counting the rest. `None` when it is spent.
+fn references(xref: &CrossReference<'_>, element: &Address, budget: &mut Budget) -> Option<References> {
+    let mut all = References::default();
+    let Some(area) = xref.place(element) else { return Some(all) };
+    let mut spans = xref.overlapping(area, budget)?;
     spans.sort_by_key(|span| (span.by, span.area.first));
+    let (mut read, mut reset, mut written) = (Vec::new(), Vec::new(), Vec::new());
     for spans in spans.chunk_by(|a, b| a.by == b.by) {
         let Some(it) = spans.first().and_then(|span| xref.use_of(span)) else { continue };
         let role = joined_role(spans.iter().map(|span| span.role));
-        let mut reference = Reference {
-            location: it.location,
-            mnemonic: it.mnemonic.to_string(),
-            operand: it.operand,
-            written: it.symbol.map_or_else(|| it.address.to_string(), str::to_owned),
-            members: spans.iter().flat_map(|span| members(span.area, area, element.file_type)).collect(),
-            role,
-            certainty: certainty(spans.iter().any(|span| span.definite)),
+        let certainty = certainty(spans.iter().any(|span| span.definite));
+        let kind = match it.kind {
+            Some(Kind::Timer | Kind::Counter) => continue,
+            Some(Kind::Resettable) => &mut reset,
+            _ if role.writes() => {
+                let word = |word: u64| {
+                    let part = Area { first: area.first + 16 * word, bits: 16, ..area };
+                    spans.iter().any(|span| span.role.writes() && xref.overlap(&span.area, &part))
+                };
+                all.writes_preset |= word(1);
+                all.writes_accum |= word(2);
+                all.writes_what_it_reads |= role.reads();
+                &mut written
+            }
+            _ => &mut read,
         };
-        reference.members.dedup();
-        match it.kind {
-            Some(Kind::Timer | Kind::Counter) => {}
-            Some(Kind::Resettable) => reset.push(reference),
-            _ if role.writes() => written.push(reference),
-            _ => read.push(reference),
-        }
+        all.definite |= certainty == Certainty::Definite;
+        kind.push((certainty, it, role, spans));
     }
-    for all in [&mut read, &mut reset, &mut written] {
-        all.sort_by_key(|it| (it.certainty, it.location));
-    }
-    (read, reset, written)
+    let mut listed = |mut found: Vec<(Certainty, &Use<'_>, Role, &[Span])>| {
+        found.sort_by_key(|(certainty, it, ..)| (*certainty, it.location));
+        let count = budget.rows(found.len());
+        let more = found.len() - count;
+        let references = found.into_iter().take(count).map(|(certainty, it, role, spans)| {
+            let mut members: Vec<String> =
+                spans.iter().flat_map(|span| members(span.area, area, element.file_type)).collect();
+            members.dedup();
+            Reference {
+                location: it.location,
+                mnemonic: it.mnemonic.to_string(),
+                operand: it.operand,
+                written: it.symbol.map_or_else(|| it.address.to_string(), str::to_owned),
+                members,
+                role,
+                certainty,
+            }
+        });
+        (references.collect(), more)
+    };
+    (all.read_by, all.left_out.read_by) = listed(read);
+    (all.reset_by, all.left_out.reset_by) = listed(reset);
+    (all.written_by, all.left_out.written_by) = listed(written);
+    Some(all)
 }
 
 /// The parts of an element inside an area, nothing when it is all of it.

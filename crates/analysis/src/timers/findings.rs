@@ -4,6 +4,7 @@ use ladder::Address;
 
 use crate::location::Location;
 
+use super::build::References;
 use super::{ElementKind, InstructionValues, Reference, TimerCounter, Usage};
 
 /// Something about an element that deserves a look.
@@ -15,6 +16,8 @@ pub struct TimerFinding {
     pub kind: TimerFindingKind,
     /// The rungs it is about.
     pub locations: Vec<Location>,
+    /// Places beyond those in `locations`.
+    pub left_out: usize,
 }
 
 /// What deserves a look.
@@ -64,49 +67,53 @@ impl TimerFindingKind {
     }
 }
 
-pub(super) fn findings(element: &TimerCounter) -> Vec<TimerFinding> {
+/// Findings of an element. Without its references, which were too many to look up, nothing is said of
+/// who reads or writes it.
+pub(super) fn findings(element: &TimerCounter, uses: Option<&References>) -> Vec<TimerFinding> {
     use TimerFindingKind as K;
     let mut found = Vec::new();
     let own: Vec<Location> = element.instructions.iter().map(|it| it.location).collect();
-    let mut add = |kind, locations: &[Location]| {
-        found.push(TimerFinding { address: element.address.clone(), kind, locations: locations.to_vec() });
+    let mut add_some = |kind, locations: &[Location], left_out| {
+        found.push(TimerFinding { address: element.address.clone(), kind, locations: locations.to_vec(), left_out });
     };
+    let mut add = |kind, locations: &[Location]| add_some(kind, locations, 0);
     let places = |all: &[Reference]| all.iter().map(|it| it.location).collect::<Vec<_>>();
-    let touches = |all: &[Reference], member: &str| {
-        all.iter().any(|it| it.role.writes() && (it.members.is_empty() || it.members.iter().any(|m| m == member)))
-    };
     if own.len() > 1 && !is_up_down(element) {
         add(K::SeveralInstructions, &own);
     }
-    match element.usage {
-        Usage::ConfiguredOnly => add(K::Unused, &[]),
-        Usage::ReferencedOnly if element.written_by.is_empty() && element.reset_by.is_empty() => {
-            add(K::OnlyRead, &places(&element.read_by));
-        }
-        Usage::ReferencedOnly => {}
-        Usage::Active => {
-            if element.preset == Some(0) && !touches(&element.written_by, "PRE") {
+    match (element.usage, uses) {
+        (Usage::ConfiguredOnly, Some(_)) => add(K::Unused, &[]),
+        (Usage::Active, Some(uses)) => {
+            if element.preset == Some(0) && !uses.writes_preset {
                 add(K::PresetNeverSet, &own);
             }
             let retentive = element.mnemonics().iter().any(|m| matches!(*m, "RTO" | "CTU" | "CTD"));
-            if retentive && element.reset_by.is_empty() && !touches(&element.written_by, "ACC") {
+            if retentive && !uses.is_reset() && !uses.writes_accum {
                 add(K::NeverReset, &own);
             }
-            if element.mnemonics().contains(&"TOF") && !element.reset_by.is_empty() {
-                add(K::ResetOfOffDelay, &places(&element.reset_by));
-            }
-            if element.read_by.is_empty() && !element.written_by.iter().any(|it| it.role.reads()) {
+            if !uses.is_read() && !uses.writes_what_it_reads {
                 add(K::NeverRead, &own);
             }
         }
+        _ => {}
+    }
+    match (element.usage, uses) {
+        (Usage::ReferencedOnly, Some(uses)) if !uses.is_written() && !uses.is_reset() => {
+            add_some(K::OnlyRead, &places(&uses.read_by), uses.left_out.read_by);
+        }
+        (Usage::Active, Some(uses)) if element.mnemonics().contains(&"TOF") && uses.is_reset() => {
+            add_some(K::ResetOfOffDelay, &places(&uses.reset_by), uses.left_out.reset_by);
+        }
+        _ => {}
     }
     if element.usage != Usage::ConfiguredOnly && element.data.is_none() {
         let mut all = own.clone();
-        all.extend(places(&element.read_by));
+        all.extend(uses.map(|uses| places(&uses.read_by)).unwrap_or_default());
         all.sort_unstable();
         all.dedup();
-        add(K::NoElement, &all);
+        add_some(K::NoElement, &all, uses.map_or(0, |uses| uses.left_out.read_by));
     }
+    let mut add = |kind, locations: &[Location]| add_some(kind, locations, 0);
     let negative = element.preset.is_some_and(|n| n < 0) || element.accum.is_some_and(|n| n < 0);
     if negative && element.kind == ElementKind::Timer {
         add(K::Negative, &own);

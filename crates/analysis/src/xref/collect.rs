@@ -1,5 +1,7 @@
 //! From instructions to the stretches of data they touch.
 
+use std::borrow::Borrow;
+use std::hash::{Hash, Hasher};
 use std::ops::Deref;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -31,6 +33,26 @@ impl Deref for Spelled<'_> {
             Spelled::Stored(address) => address,
             Spelled::Made(address) => address,
         }
+    }
+}
+
+impl Borrow<Address> for Spelled<'_> {
+    fn borrow(&self) -> &Address {
+        self
+    }
+}
+
+impl PartialEq for Spelled<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl Eq for Spelled<'_> {}
+
+impl Hash for Spelled<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (**self).hash(state);
     }
 }
 

@@ -1,9 +1,11 @@
 //! What the cross reference shows to be missing: readers, writers, documentation, data.
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 use ladder::{Address, FileType, Value};
 
+use crate::budget::Budget;
 use crate::coverage::documented;
 use crate::location::Location;
 
@@ -22,6 +24,8 @@ pub struct Finding {
     /// The accesses it rests on: the writers of what is never read, the readers of what is never
     /// written, else all that name the address.
     pub locations: Vec<Location>,
+    /// Rungs beyond those in `locations`.
+    pub left_out: usize,
     /// The value stored in the project.
     pub value: Option<Value>,
 }
@@ -94,53 +98,89 @@ impl Reason {
     }
 }
 
+/// What deserves a look in a program.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// By kind, then by address.
+    pub list: Vec<Finding>,
+    /// Addresses that were not judged by their readers and writers, because the program has so many
+    /// accesses that overlap. 0 for any real program.
+    pub not_judged: usize,
+}
+
+/// Sorted locations, each once, and how many more there are.
+fn bounded(mut locations: Vec<Location>, budget: &mut Budget) -> (Vec<Location>, usize) {
+    locations.sort_unstable();
+    locations.dedup();
+    let listed = budget.rows(locations.len());
+    let more = locations.len() - listed;
+    locations.truncate(listed);
+    (locations, more)
+}
+
 impl CrossReference<'_> {
-    /// All findings, by kind, then by address.
-    pub fn findings(&self) -> Vec<Finding> {
+    /// All findings. Their locations are bounded as the accesses of [`CrossReference::all`] are.
+    pub fn findings(&self) -> Findings {
+        let mut budget = Budget::of_report();
         let mut found: Vec<(FindingKind, GroupKey, Finding)> = Vec::new();
-        for named in &self.data.named {
-            for finding in self.of_named(named) {
+        let mut not_judged = 0;
+        for (named, users) in self.data.named.iter().zip(self.users()) {
+            not_judged += usize::from(budget.is_spent());
+            for finding in self.of_named(named, users, &mut budget) {
                 found.push((finding.kind, group_key(&named.address, Some(named.area)), finding));
             }
         }
-        found.extend(self.outside_the_data_table());
+        found.extend(self.outside_the_data_table(&mut budget));
         found.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
-        found.into_iter().map(|(_, _, finding)| finding).collect()
+        Findings { list: found.into_iter().map(|(_, _, finding)| finding).collect(), not_judged }
     }
 
-    fn of_named(&self, named: &Named<'_>) -> Vec<Finding> {
-        let area = crate::space::Area { bits: named.area.bits.max(named.reach), ..named.area };
-        let (mut readers, mut writers, mut users) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut read, mut written) = (false, false);
-        for span in self.overlapping(area) {
-            let Some(it) = self.use_of(&span) else { continue };
-            let names_it = self.named_area(it) == Some(named.area);
-            if names_it {
+    /// For each named address the instructions that name it.
+    fn users(&self) -> Vec<Vec<Location>> {
+        let mut users = vec![Vec::new(); self.data.named.len()];
+        for it in &self.data.uses {
+            if let Some(users) = it.named.and_then(|named| users.get_mut(named)) {
                 users.push(it.location);
             }
-            // A timer that reads its own ACC does not make the timer a used one.
-            if span.role.reads() && !(names_it && owns_element(it.kind)) {
-                read = true;
-                if span.definite {
-                    readers.push(it.location);
+        }
+        users
+    }
+
+    fn of_named(&self, named: &Named<'_>, users: Vec<Location>, budget: &mut Budget) -> Vec<Finding> {
+        let area = crate::space::Area { bits: named.area.bits.max(named.reach), ..named.area };
+        let (mut readers, mut writers) = (Vec::new(), Vec::new());
+        let (mut read, mut written) = (false, false);
+        if !budget.is_spent() {
+            let compared = self.index.overlapping(&self.data.spans, &self.data.spaces, area, |span| {
+                let Some(it) = self.use_of(span) else { return ControlFlow::Continue(()) };
+                // A timer that reads its own ACC does not make the timer a used one.
+                let names_it = self.named_area(it) == Some(named.area);
+                if span.role.reads() && !(names_it && owns_element(it.kind)) {
+                    read = true;
+                    if span.definite {
+                        readers.push(it.location);
+                    }
                 }
-            }
-            if span.role.writes() {
-                written = true;
-                if span.definite {
-                    writers.push(it.location);
+                if span.role.writes() {
+                    written = true;
+                    if span.definite {
+                        writers.push(it.location);
+                    }
                 }
-            }
+                // Both: neither is missing, and who else does it does not matter.
+                if read && written { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            budget.spend(compared);
         }
         let mut found = Vec::new();
-        let mut add = |kind, mut locations: Vec<Location>| {
-            locations.sort_unstable();
-            locations.dedup();
+        let mut add = |kind, locations: Vec<Location>| {
+            let (locations, left_out) = bounded(locations, budget);
             found.push(Finding {
                 kind,
                 address: (*named.address).clone(),
                 expected: expected(kind, &named.address),
                 locations,
+                left_out,
                 value: self.value(&named.address),
             });
         };
@@ -157,7 +197,7 @@ impl CrossReference<'_> {
     }
 
     /// Accesses to data that the project does not have.
-    fn outside_the_data_table(&self) -> Vec<(FindingKind, GroupKey, Finding)> {
+    fn outside_the_data_table(&self, budget: &mut Budget) -> Vec<(FindingKind, GroupKey, Finding)> {
         let io = &self.image.io;
         let io_known = io.unknown.is_none() && !io.slots.is_empty();
         let mut places: BTreeMap<(FindingKind, usize, u64), Place<'_>> = BTreeMap::new();
@@ -182,13 +222,12 @@ impl CrossReference<'_> {
             place.locations.push(it.location);
             place.verified |= it.compiled;
         }
-        let finding = |((kind, _, _), Place { address, mut locations, verified }): ((FindingKind, usize, u64), _)| {
-            locations.sort_unstable();
-            locations.dedup();
+        let finding = |((kind, _, _), Place { address, locations, verified }): ((FindingKind, usize, u64), _)| {
+            let (locations, left_out) = bounded(locations, budget);
             let address = Address { indexed: false, ..address.clone() };
             let key = group_key(&address, self.place(&address));
             let expected = (!verified).then_some(Reason::NotVerified);
-            (kind, key, Finding { kind, address, expected, locations, value: None })
+            (kind, key, Finding { kind, address, expected, locations, left_out, value: None })
         };
         places.into_iter().map(finding).collect()
     }

@@ -1,5 +1,7 @@
 //! Spans sorted by place, so that a lookup costs the size of its answer.
 
+use std::ops::ControlFlow;
+
 use crate::space::{Area, Key, Spaces};
 
 use super::Level;
@@ -62,30 +64,52 @@ impl Index {
     }
 
     /// Calls `found` with every span that has a bit in common with `area`, those through an
-    /// indirect file number included. `spans` are those the index was made of.
-    pub(crate) fn overlapping(&self, spans: &[Span], spaces: &Spaces<'_>, area: Area, mut found: impl FnMut(&Span)) {
-        self.in_space(spans, area, spaces.stride(area.space), &mut found);
-        let Some(space) = spaces.get(area.space) else { return };
+    /// indirect file number included, until it says [`ControlFlow::Break`]. `spans` are those the
+    /// index was made of. Returns how many spans were compared.
+    pub(crate) fn overlapping(
+        &self,
+        spans: &[Span],
+        spaces: &Spaces<'_>,
+        area: Area,
+        mut found: impl FnMut(&Span) -> ControlFlow<()>,
+    ) -> usize {
+        let mut compared = 0;
+        let stride = spaces.stride(area.space);
+        if self.in_space(spans, area, stride, &mut compared, &mut found).is_break() {
+            return compared;
+        }
+        let Some(space) = spaces.get(area.space) else { return compared };
         let any_file = Key { number: None, slot: None, ..space.key };
         if any_file != space.key
             && let Some(any) = spaces.find(any_file)
         {
-            self.in_space(spans, Area { space: any, ..area }, spaces.stride(any), &mut found);
+            let area = Area { space: any, ..area };
+            let _ = self.in_space(spans, area, spaces.stride(any), &mut compared, &mut found);
         }
+        compared
     }
 
-    fn in_space(&self, spans: &[Span], area: Area, stride: u64, found: &mut impl FnMut(&Span)) {
-        let Some(bucket) = self.buckets.get(area.space) else { return };
+    fn in_space(
+        &self,
+        spans: &[Span],
+        area: Area,
+        stride: u64,
+        compared: &mut usize,
+        found: &mut impl FnMut(&Span) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let Some(bucket) = self.buckets.get(area.space) else { return ControlFlow::Continue(()) };
         let earliest = area.first.saturating_sub(bucket.widest);
         let start = bucket.narrow.partition_point(|(first, _)| *first < earliest);
         let near = bucket.narrow.iter().skip(start).take_while(|(first, _)| *first < area.end());
         let numbers = near.map(|(_, number)| number).chain(&bucket.wide);
         let indexed = numbers.filter_map(|number| spans.get(usize::try_from(*number).ok()?));
         for span in indexed.chain(&bucket.late) {
+            *compared += 1;
             if span.area.overlaps(&area, stride) {
-                found(span);
+                found(span)?;
             }
         }
+        ControlFlow::Continue(())
     }
 }
 
@@ -127,7 +151,10 @@ mod tests {
         for _ in 0..100 {
             let asked = area();
             let mut found = Vec::new();
-            index.overlapping(&spans, &spaces, asked, |span| found.push(span.by));
+            index.overlapping(&spans, &spaces, asked, |span| {
+                found.push(span.by);
+                ControlFlow::Continue(())
+            });
             found.sort_unstable();
             // Bit by bit, without the arithmetic of the areas.
             let has = |area: &Area, bit: u64| {

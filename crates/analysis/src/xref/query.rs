@@ -2,6 +2,8 @@
 
 use ladder::{Address, FileType, Operand, Target};
 
+use crate::budget::Budget;
+
 use super::{CrossReference, Group, group_key};
 
 /// What an entered text means.
@@ -13,7 +15,7 @@ pub enum Found<'x> {
     File {
         /// `N7`, `HSC`.
         label: String,
-        /// Ascending.
+        /// Ascending; bounded as [`CrossReference::all`] is.
         groups: Vec<Group<'x>>,
     },
     /// A program file, `U:4`: see [`crate::CallGraph`].
@@ -34,31 +36,32 @@ impl CrossReference<'_> {
     pub fn find(&self, text: &str) -> Option<Found<'_>> {
         let text = text.trim();
         match Operand::parse(text) {
-            Operand::Address(address) => return Some(Found::Address(self.group(address))),
+            Operand::Address(address) => return Some(Found::Address(self.whole_group(address))),
             Operand::ProgramFile(number) => return Some(Found::ProgramFile(number)),
             Operand::Label { file, number } => return Some(Found::Label { file, number }),
             _ => {}
         }
         match self.data.symbols.resolve(text) {
-            Some(Target::Address(address)) => return Some(Found::Address(self.group(address))),
+            Some(Target::Address(address)) => return Some(Found::Address(self.whole_group(address))),
             Some(Target::ProgramFileOperand(number)) => return Some(Found::ProgramFile(number)),
             Some(Target::Label { file, number }) => return Some(Found::Label { file, number }),
             _ => {}
         }
         let (file_type, number) = file_label(text)?;
         let named = self.data.named.iter();
-        let mut groups: Vec<_> = named
+        let mut named: Vec<_> = named
             .filter(|named| named.address.file_type == file_type && named.address.file.number() == Some(number))
-            .map(|named| (group_key(&named.address, Some(named.area)), self.group((*named.address).clone())))
+            .map(|named| (group_key(&named.address, Some(named.area)), named))
             .collect();
-        groups.sort_by(|a, b| a.0.cmp(&b.0));
-        let groups = groups.into_iter().map(|(_, group)| group).collect();
+        named.sort_by(|a, b| a.0.cmp(&b.0));
+        let mut budget = Budget::of_report();
+        let groups = named.into_iter().map(|(_, it)| self.group(&it.address, Some(it.area), &mut budget)).collect();
         Some(Found::File { label: text.to_ascii_uppercase(), groups })
     }
 
-    fn group(&self, address: Address) -> Group<'_> {
+    fn whole_group(&self, address: Address) -> Group<'_> {
         let accesses = self.of(&address);
-        Group { address, accesses }
+        Group { address, accesses, left_out: Some(0) }
     }
 }
 

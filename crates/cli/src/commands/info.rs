@@ -240,7 +240,8 @@ fn print_channels(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
             writeln!(out, "    {:<38}{}{doubt}", setting.name, setting.value)?;
         }
         if channel.unexplained_words > 0 {
-            writeln!(out, "    {} configuration words of unknown meaning", channel.unexplained_words)?;
+            let words = if channel.unexplained_words == 1 { "word" } else { "words" };
+            writeln!(out, "    {} configuration {words} of unknown meaning", channel.unexplained_words)?;
         }
     }
     Ok(())

@@ -12,6 +12,8 @@ pub struct Case {
     pub seconds: f64,
     /// How it went.
     pub result: Verdict,
+    /// What a reader must know beside the verdict: approximations; a line each.
+    pub notes: Vec<String>,
 }
 
 /// How a case went.
@@ -40,20 +42,24 @@ pub fn document(cases: &[Case]) -> String {
     for case in cases {
         let (class, name) = (escape(&case.class), escape(&case.name));
         let _ = write!(text, "<testcase classname=\"{class}\" name=\"{name}\" time=\"{:.3}\"", case.seconds);
-        let (element, lines) = match &case.result {
-            Verdict::Passed => {
-                text.push_str("/>\n");
-                continue;
-            }
-            Verdict::Failed(lines) => ("failure", lines.as_slice()),
-            Verdict::Error(line) => ("error", std::slice::from_ref(line)),
+        let verdict = match &case.result {
+            Verdict::Passed => None,
+            Verdict::Failed(lines) => Some(("failure", lines.as_slice())),
+            Verdict::Error(line) => Some(("error", std::slice::from_ref(line))),
         };
-        let message = escape(lines.first().map_or("", String::as_str));
-        let _ = writeln!(
-            text,
-            ">\n<{element} message=\"{message}\">{}</{element}>\n</testcase>",
-            escape(&lines.join("\n"))
-        );
+        if verdict.is_none() && case.notes.is_empty() {
+            text.push_str("/>\n");
+            continue;
+        }
+        text.push_str(">\n");
+        if let Some((element, lines)) = verdict {
+            let message = escape(lines.first().map_or("", String::as_str));
+            let _ = writeln!(text, "<{element} message=\"{message}\">{}</{element}>", escape(&lines.join("\n")));
+        }
+        if !case.notes.is_empty() {
+            let _ = writeln!(text, "<system-out>{}</system-out>", escape(&case.notes.join("\n")));
+        }
+        text.push_str("</testcase>\n");
     }
     text.push_str("</testsuite>\n</testsuites>\n");
     text
@@ -82,13 +88,18 @@ mod tests {
 
     #[test]
     fn counts_and_escapes() {
-        let case = |name: &str, result| Case { class: "a".into(), name: name.into(), seconds: 0.5, result };
+        let case =
+            |name: &str, result| Case { class: "a".into(), name: name.into(), seconds: 0.5, result, notes: Vec::new() };
         let text = document(&[
             case("x<y", Verdict::Passed),
             case("b", Verdict::Failed(vec!["N7:0 \"1\"".into(), "more".into()])),
             case("c", Verdict::Error("no\u{1} file".into())),
+            Case { notes: vec!["approximate: PTO < pulses".into()], ..case("d", Verdict::Passed) },
         ]);
-        assert!(text.contains("tests=\"3\" failures=\"1\" errors=\"1\" time=\"1.500\""));
+        assert!(text.contains(
+            "name=\"d\" time=\"0.500\">\n<system-out>approximate: PTO &lt; pulses</system-out>\n</testcase>"
+        ));
+        assert!(text.contains("tests=\"4\" failures=\"1\" errors=\"1\" time=\"2.000\""));
         assert!(text.contains("name=\"x&lt;y\" time=\"0.500\"/>"));
         assert!(text.contains("<failure message=\"N7:0 &quot;1&quot;\">N7:0 &quot;1&quot;\nmore</failure>"));
         assert!(text.contains("<error message=\"no? file\">"));

@@ -104,6 +104,29 @@ fn each_project(
     input: &Input,
     mut work: impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
+    each_file(paths, input.json, |path, is_last, out| {
+        let project = match open(path, mode(input.strict)) {
+            Ok(project) => project,
+            Err(why) => return Ok(Err(why)),
+        };
+        let opened = Opened { path: path.to_owned(), project, choice: input.image };
+        let outcome = one_project(&opened, input.json, out, &mut work)?;
+        if is_last {
+            // The process ends next. Giving back a large model piece by piece would take a tenth of
+            // the whole run.
+            std::mem::forget(opened);
+        }
+        Ok(Ok(outcome))
+    })
+}
+
+/// Hands one file after the other to `work`, and whether it is the last. The text for one that cannot
+/// be read is reported and the rest goes on. The worst outcome counts.
+fn each_file(
+    paths: &[PathBuf],
+    json: bool,
+    mut work: impl FnMut(&Path, bool, &mut dyn Write) -> Result<Result<Outcome, String>, Error>,
+) -> Result<Outcome, Error> {
     let files = files::expand(paths, files::PROJECTS).map_err(Error::Use)?;
     let stdout = std::io::stdout();
     let bar = files::progress(files.len(), stdout.is_terminal());
@@ -112,24 +135,15 @@ fn each_project(
     let mut left = files.len();
     for path in files {
         left -= 1;
-        bar.set_message(path.display().to_string());
-        let result = match open(&path, mode(input.strict)) {
-            Ok(project) => {
-                let opened = Opened { path, project, choice: input.image };
-                let result = one_project(&opened, input.json, &mut out, &mut work)?;
-                if left == 0 {
-                    // The process ends next. Giving back a large model piece by piece would take a tenth
-                    // of the whole run.
-                    std::mem::forget(opened);
-                }
-                result
-            }
+        let name = path.display().to_string();
+        bar.set_message(name.clone());
+        let result = match work(&path, left == 0, &mut out)? {
+            Ok(result) => result,
             Err(why) => {
-                if input.json {
-                    let line = serde_json::json!({"file": path.display().to_string(), "error": why});
-                    writeln!(out, "{line}")?;
+                if json {
+                    writeln!(out, "{}", serde_json::json!({"file": name, "error": why}))?;
                 }
-                bar.suspend(|| eprintln!("{}", printable(&format!("{}: {why}", path.display()))));
+                bar.suspend(|| eprintln!("{}", printable(&format!("{name}: {why}"))));
                 Outcome::Unreadable
             }
         };
@@ -144,7 +158,7 @@ fn each_project(
 fn one_project(
     opened: &Opened,
     json: bool,
-    out: &mut impl Write,
+    mut out: &mut dyn Write,
     work: &mut impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
     let missing = match opened.choice {
@@ -156,7 +170,7 @@ fn one_project(
         eprintln!("{}: the project holds no such image", opened.path.display());
         return Ok(Outcome::Finding);
     }
-    let mut outcome = work(&opened, out)?;
+    let mut outcome = work(opened, &mut out)?;
     if opened.project.diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
         // Part of the input could not be read, whatever was printed of the rest.
         outcome = outcome.max(Outcome::Unreadable);
@@ -191,4 +205,14 @@ fn diagnostics_json(project: &Project) -> serde_json::Value {
 /// `first line / second line` of a description, for one table cell.
 fn one_line(lines: &[String]) -> String {
     lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// Rungs, then how many more there are.
+fn places(locations: &[analysis::Location], left_out: usize) -> String {
+    let rungs = locations.iter().map(ToString::to_string);
+    rungs.chain((left_out > 0).then(|| more(left_out))).collect::<Vec<_>>().join(", ")
+}
+
+fn more(left_out: usize) -> String {
+    format!("and {left_out} more")
 }

@@ -55,11 +55,11 @@ pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
             return Ok(Outcome::Finding);
         }
     };
-    for (why, count) in reasons(program.approximations()) {
-        let times = if count > 1 { format!(" ({count} places)") } else { String::new() };
-        eprintln!("{}: approximate: {why}{times}", arguments.program.display());
+    for line in reasons(program.approximations()) {
+        eprintln!("{}: approximate: {line}", arguments.program.display());
     }
-    let mut simulation = Simulation { machine: Machine::new(program), sets, rungs };
+    let approximations: Vec<String> = program.approximations().iter().map(ToString::to_string).collect();
+    let mut simulation = Simulation { machine: Machine::new(program), sets, rungs, approximations };
     simulation.write_initial()?;
     simulation.machine.enter_run();
     simulation.write_initial()?;
@@ -161,6 +161,8 @@ struct Simulation {
     machine: Machine,
     sets: Vec<Set>,
     rungs: Vec<RungColumn>,
+    /// What runs only approximately, a line each.
+    approximations: Vec<String>,
 }
 
 impl Simulation {
@@ -182,7 +184,8 @@ impl Simulation {
     fn trace(mut self, arguments: &RunArguments, columns: Vec<Column>, out: impl Write) -> Result<Outcome, Error> {
         let mut out = BufWriter::new(out);
         let rungs = std::mem::take(&mut self.rungs);
-        let mut writer = writer(arguments.format, &columns, &rungs, &arguments.program)?;
+        let approximations = std::mem::take(&mut self.approximations);
+        let mut writer = writer(arguments.format, &columns, &rungs, &arguments.program, &approximations)?;
         writer.head(&mut out)?;
         let mut recorder =
             Recorder { rungs: rungs.iter().map(|rung| (rung.file, rung.rung)).collect(), seen: Vec::new() };

@@ -37,6 +37,8 @@ struct Sum {
     passed: usize,
     failed: usize,
     stopped: usize,
+    /// Scenarios whose program runs only approximately.
+    approximate: usize,
     scans: u64,
     checks: usize,
 }
@@ -63,8 +65,11 @@ pub fn run(arguments: &TestArguments) -> Result<Outcome, Error> {
     }
     bar.finish_and_clear();
     if !arguments.json {
-        let Sum { passed, failed, stopped, scans, checks } = sum;
+        let Sum { passed, failed, stopped, approximate, scans, checks } = sum;
         writeln!(out, "{passed} passed, {failed} failed, {stopped} not run; {checks} expectations, {scans} scans")?;
+        if approximate > 0 {
+            writeln!(out, "{approximate} of them ran with instructions that are only approximated")?;
+        }
     }
     out.flush()?;
     if let Some(path) = &arguments.junit {
@@ -80,6 +85,7 @@ impl Sum {
             Ok(report) => {
                 self.scans += report.scans;
                 self.checks += report.checks;
+                self.approximate += usize::from(!report.approximations.is_empty());
                 if report.failures.is_empty() {
                     self.passed += 1;
                     return Outcome::Done;
@@ -144,23 +150,33 @@ fn print(out: &mut impl Write, path: &Path, tried: &Tried, quiet: bool) -> Resul
 }
 
 fn approximations(out: &mut impl Write, report: &Report) -> Result<(), Error> {
-    for (why, count) in reasons(&report.approximations) {
-        let times = if count > 1 { format!(" ({count} places)") } else { String::new() };
-        writeln!(out, "      approximate: {why}{times}")?;
-    }
-    if report.strays > 0 {
-        writeln!(out, "      note: indirect addresses reached beyond their file {} times", report.strays)?;
+    for note in notes(report) {
+        writeln!(out, "      {note}")?;
     }
     Ok(())
 }
 
-/// Approximations of a program, equal reasons together.
-pub(super) fn reasons(approximations: &[Approximation]) -> BTreeMap<&str, usize> {
-    let mut reasons = BTreeMap::new();
-    for approximation in approximations {
-        *reasons.entry(approximation.why.as_str()).or_insert(0) += 1;
+/// What a reader must know beside the verdict, a line each.
+fn notes(report: &Report) -> Vec<String> {
+    let mut notes: Vec<_> =
+        reasons(&report.approximations).into_iter().map(|line| format!("approximate: {line}")).collect();
+    if report.strays > 0 {
+        notes.push(format!("note: indirect addresses reached beyond their file {} times", report.strays));
     }
-    reasons
+    notes
+}
+
+/// Approximations of a program, equal reasons together, each with its first place.
+pub(super) fn reasons(approximations: &[Approximation]) -> Vec<String> {
+    let mut reasons: BTreeMap<&str, (&Approximation, usize)> = BTreeMap::new();
+    for approximation in approximations {
+        reasons.entry(&approximation.why).or_insert((approximation, 0)).1 += 1;
+    }
+    let line = |(first, count): (&Approximation, usize)| match count {
+        1 => first.to_string(),
+        _ => format!("{first} (and {} more)", count - 1),
+    };
+    reasons.into_values().map(line).collect()
 }
 
 fn describe(path: &Path, tried: &Tried) -> Value {
@@ -207,5 +223,6 @@ fn case(path: &Path, tried: &Tried, seconds: f64) -> Case {
         Ok(report) => Verdict::Failed(report.failures.iter().map(ToString::to_string).collect()),
         Err(Stopped::Unreadable(why) | Stopped::Refused(why)) => Verdict::Error(why.clone()),
     };
-    Case { class, name: format!("{file}: {}", tried.name), seconds, result }
+    let notes = tried.result.as_ref().map(notes).unwrap_or_default();
+    Case { class, name: format!("{file}: {}", tried.name), seconds, result, notes }
 }

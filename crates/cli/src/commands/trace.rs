@@ -45,7 +45,8 @@ pub trait Writer {
     }
 }
 
-/// The writer of a form.
+/// The writer of a form. `approximations`: what runs only approximately, a line each; told in the forms
+/// that have a place for it.
 ///
 /// # Errors
 /// The form cannot hold a column.
@@ -54,18 +55,19 @@ pub fn writer<'a>(
     columns: &'a [Column],
     rungs: &'a [RungColumn],
     program: &Path,
+    approximations: &'a [String],
 ) -> Result<Box<dyn Writer + 'a>, Error> {
     let text = columns.iter().find(|column| matches!(column.sample, Value::Text(_)));
     Ok(match (form, text) {
         (TraceForm::Table, _) => Box::new(Table { columns, rungs, widths: Vec::new(), last: None }),
         (TraceForm::Csv, _) => Box::new(Csv { columns, rungs }),
-        (TraceForm::Json, _) => Box::new(Json { columns, rungs }),
+        (TraceForm::Json, _) => Box::new(Json { columns, rungs, approximations }),
         (TraceForm::Vcd, Some(column)) => {
             return Err(Error::Use(format!("{} is a string: a value change dump holds none", column.address)));
         }
         (TraceForm::Vcd, None) => {
             let scope = program.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-            Box::new(Vcd { columns, rungs, scope, last: Vec::new() })
+            Box::new(Vcd { columns, rungs, scope, approximations, last: Vec::new() })
         }
     })
 }
@@ -202,6 +204,7 @@ impl Writer for Csv<'_> {
 struct Json<'a> {
     columns: &'a [Column],
     rungs: &'a [RungColumn],
+    approximations: &'a [String],
 }
 
 impl Writer for Json<'_> {
@@ -247,6 +250,7 @@ impl Writer for Json<'_> {
             "time_s": machine.now().as_secs_f64(),
             "fault": machine.fault().map(|fault| fault.to_string()),
             "strays": machine.strays(),
+            "approximations": self.approximations,
         });
         writeln!(out, "{line}")?;
         Ok(())
@@ -258,6 +262,7 @@ struct Vcd<'a> {
     columns: &'a [Column],
     rungs: &'a [RungColumn],
     scope: String,
+    approximations: &'a [String],
     /// What was written last, a text per variable.
     last: Vec<String>,
 }
@@ -304,6 +309,10 @@ impl Vcd<'_> {
 impl Writer for Vcd<'_> {
     fn head(&mut self, out: &mut dyn Write) -> Result<(), Error> {
         writeln!(out, "$version rungs {} $end", env!("CARGO_PKG_VERSION"))?;
+        for line in self.approximations {
+            // A dollar sign could end the comment.
+            writeln!(out, "$comment approximate: {} $end", line.replace('$', "_"))?;
+        }
         writeln!(out, "$timescale 1 us $end")?;
         writeln!(out, "$scope module {} $end", vcd_name(&self.scope))?;
         for (index, column) in self.columns.iter().enumerate() {

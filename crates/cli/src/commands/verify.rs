@@ -1,51 +1,32 @@
 //! `rungs verify`: every byte accounted for.
 
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 
 use convert::verify::{CodeCheck, CodeDifference, check_code};
 use serde_json::{Value, json};
 
-use super::{mode, read_file};
+use super::{each_file, mode, read_file};
 use crate::args::VerifyArguments;
-use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
-    let paths = files::expand(&arguments.files, files::PROJECTS).map_err(Error::Use)?;
-    let stdout = std::io::stdout();
-    let bar = files::progress(paths.len(), stdout.is_terminal());
-    let mut out = std::io::BufWriter::new(stdout.lock());
-    let mut outcome = Outcome::Done;
-    for path in &paths {
-        let name = path.display().to_string();
-        bar.set_message(name.clone());
+    each_file(&arguments.files, arguments.json, |path, _, out| {
         let read = read_file(path)
             .and_then(|bytes| rss::Project::read(&bytes, mode(arguments.strict)).map_err(|error| error.to_string()));
-        let result = match read {
-            Ok(project) => {
-                let verification = rss::verify::verify(&project);
-                let code = check_code(&project);
-                if arguments.json {
-                    writeln!(out, "{}", line(&name, &verification, &code))?;
-                } else {
-                    print(&name, &verification, &code, &mut Printable(&mut out))?;
-                }
-                judge(&verification, &code)
-            }
-            Err(why) => {
-                if arguments.json {
-                    writeln!(out, "{}", json!({"file": name, "error": why}))?;
-                }
-                bar.suspend(|| eprintln!("{name}: {why}"));
-                Outcome::Unreadable
-            }
+        let project = match read {
+            Ok(project) => project,
+            Err(why) => return Ok(Err(why)),
         };
-        outcome = outcome.max(result);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    out.flush()?;
-    Ok(outcome)
+        let name = path.display().to_string();
+        let verification = rss::verify::verify(&project);
+        let code = check_code(&project);
+        if arguments.json {
+            writeln!(out, "{}", line(&name, &verification, &code))?;
+        } else {
+            print(&name, &verification, &code, &mut Printable(out))?;
+        }
+        Ok(Ok(judge(&verification, &code)))
+    })
 }
 
 /// A stream that could not be opened or read to its end is unreadable input; deviations, and bytes or

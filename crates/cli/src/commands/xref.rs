@@ -4,9 +4,10 @@ use std::io::Write;
 
 use analysis::{Access, CallGraph, CrossReference, Finding, Found, Group, Target};
 use ladder::Address;
+use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Opened, diagnostics_json, each_project, one_line};
+use super::{Opened, diagnostics_json, each_project, one_line, places};
 use crate::args::XrefArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
@@ -86,25 +87,21 @@ impl Report<'_> {
     }
 
     fn describe(&self, only_findings: bool, out: &mut dyn Write) -> Result<(), Error> {
-        let access = |access: &Access<'_>| {
-            json!({
-                "file": access.location.file, "rung": access.location.rung, "mnemonic": access.mnemonic.to_string(),
-                "operand": access.operand, "as": access.address.to_string(), "symbol": access.symbol,
-                "role": access.role.as_str(), "certainty": access.certainty.as_str(), "level": access.level.as_str(),
-                "through": access.through.as_str(), "touches": access.touched,
-            })
-        };
         write!(out, "{{\"file\":{}", json!(self.opened.path.display().to_string()))?;
         if !only_findings {
             let mut before = ",\"addresses\":[";
             self.each_group(|group| {
+                out.write_all(std::mem::replace(&mut before, ",").as_bytes())?;
                 let (symbol, description) = self.documentation(&group.address);
-                let value = json!({
-                    "address": group.address.to_string(), "symbol": symbol, "description": description,
-                    "module": self.module(&group.address),
-                    "accesses": group.accesses.iter().map(access).collect::<Value>(),
-                });
-                write!(out, "{}{value}", std::mem::replace(&mut before, ","))
+                let row = GroupRow {
+                    address: group.address.to_string(),
+                    symbol,
+                    description,
+                    module: self.module(&group.address),
+                    accesses: group.accesses.iter().map(AccessRow::of).collect(),
+                    left_out: group.left_out,
+                };
+                serde_json::to_writer(&mut *out, &row).map_err(std::io::Error::from)
             })?;
             write!(out, "{}]", if before == "," { "" } else { before })?;
         }
@@ -124,7 +121,9 @@ impl Report<'_> {
             put("calls", self.calls.calls.iter().map(call).collect());
         }
         if self.groups.is_none() {
-            put("findings", self.xref.findings().iter().map(finding).collect());
+            let findings = self.xref.findings();
+            put("findings", findings.list.iter().map(finding).collect());
+            put("not_judged", findings.not_judged.into());
             put("never_called", self.without_caller().map(|file| file.number).collect());
             let entries = self.calls.files.iter().flat_map(|file| {
                 let entry = |entry: &analysis::Entry| {
@@ -202,31 +201,39 @@ impl Report<'_> {
                 through,
             ]);
         }
-        if table.is_empty() {
-            writeln!(out, "    no instruction reads or writes it")?;
-        } else {
+        if !table.is_empty() {
             table.write(out, "    ")?;
+        }
+        let ask = format!("`rungs xref {} '{}'` lists all", self.opened.path.display(), group.address);
+        match group.left_out {
+            Some(0) if table.is_empty() => writeln!(out, "    no instruction reads or writes it")?,
+            Some(0) => {}
+            Some(more) => writeln!(out, "    and {more} more accesses; {ask}")?,
+            None => writeln!(out, "    accesses not listed; {ask}")?,
         }
         Ok(())
     }
 
     fn print_findings(&self, out: &mut dyn Write) -> Result<(), Error> {
-        let findings: Vec<Finding> = self.xref.findings();
+        let findings = self.xref.findings();
         let mut table = Columns::new(&["Finding", "Address", "Symbol", "Rungs"]);
         // What is normal for its kind of address (an input nobody writes) is in the JSON only.
-        for finding in findings.iter().filter(|finding| finding.expected.is_none()) {
-            let places: Vec<String> = finding.locations.iter().map(ToString::to_string).collect();
+        for finding in findings.list.iter().filter(|finding| finding.expected.is_none()) {
             let (symbol, _) = self.documentation(&finding.address);
             table.row([
                 finding.kind.as_str().to_owned(),
                 finding.address.to_string(),
                 symbol.unwrap_or_default(),
-                places.join(", "),
+                places(&finding.locations, finding.left_out),
             ]);
         }
         if !table.is_empty() {
             writeln!(out, "\nWorth a look")?;
             table.write(out, "  ")?;
+        }
+        if findings.not_judged > 0 {
+            let addresses = findings.not_judged;
+            writeln!(out, "{addresses} addresses not judged: too many accesses overlap; ask for each with rungs xref")?;
         }
         let mut first = true;
         for file in self.without_caller() {
@@ -253,12 +260,59 @@ impl Report<'_> {
     }
 }
 
+/// An address in JSON. Written piece by piece: a report can have hundreds of thousands.
+#[derive(Serialize)]
+struct GroupRow<'x> {
+    address: String,
+    symbol: Option<String>,
+    description: String,
+    module: Option<String>,
+    accesses: Vec<AccessRow<'x>>,
+    /// Accesses that are not listed; `null` if not even counted.
+    left_out: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct AccessRow<'x> {
+    file: u16,
+    rung: u32,
+    mnemonic: String,
+    operand: &'x str,
+    #[serde(rename = "as")]
+    written: String,
+    symbol: Option<&'x str>,
+    role: &'static str,
+    certainty: &'static str,
+    level: &'static str,
+    through: &'static str,
+    touches: &'x str,
+}
+
+impl<'x> AccessRow<'x> {
+    fn of(access: &'x Access<'x>) -> AccessRow<'x> {
+        AccessRow {
+            file: access.location.file,
+            rung: access.location.rung,
+            mnemonic: access.mnemonic.to_string(),
+            operand: access.operand,
+            written: access.address.to_string(),
+            symbol: access.symbol,
+            role: access.role.as_str(),
+            certainty: access.certainty.as_str(),
+            level: access.level.as_str(),
+            through: access.through.as_str(),
+            touches: &access.touched,
+        }
+    }
+}
+
 fn finding(finding: &Finding) -> Value {
     json!({
         "finding": finding.kind.as_str(),
         "address": finding.address.to_string(),
         "expected": finding.expected.map(analysis::Reason::as_str),
         "rungs": finding.locations.iter().map(ToString::to_string).collect::<Value>(),
+        "left_out": finding.left_out,
     })
 }
 
