@@ -10,11 +10,12 @@ pub mod from_rss;
 pub mod json;
 mod limits;
 mod message;
+pub mod migrate;
 mod open;
 pub mod slc;
 pub mod tables;
 pub mod to_rss;
 pub mod verify;
 
-pub use limits::MAX_PARTS;
+pub use limits::{MAX_DATA_WORDS, MAX_PARTS};
 pub use open::{MAX_JSON, MAX_SLC_TEXT, OpenError, open};

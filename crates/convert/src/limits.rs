@@ -7,6 +7,27 @@ use ladder::{Element, Series};
 /// works on a program takes about a kilobyte for each.
 pub const MAX_PARTS: usize = 200_000;
 
+/// Data words that the files of one image may have: four times the largest memory of the family. A
+/// table of them takes some hundred bytes for each.
+pub const MAX_DATA_WORDS: usize = 1 << 18;
+
+/// Counts the data words of an image while it is read; `false` for a file that is too much.
+pub(crate) fn admit_words(total: &mut usize, words: usize) -> bool {
+    let with = total.saturating_add(words);
+    if with > MAX_DATA_WORDS {
+        return false;
+    }
+    *total = with;
+    true
+}
+
+/// What a diagnostic says of a file that is too much.
+pub(crate) fn words_left_out(words: usize) -> String {
+    format!(
+        "expected data files of at most {MAX_DATA_WORDS} words together; the {words} words of this one are left out"
+    )
+}
+
 /// Counts the parts of a program while it is read.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Parts(usize);

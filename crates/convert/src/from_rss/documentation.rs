@@ -1,8 +1,11 @@
 //! `MEM DATABASE` to documentation: keys to targets, records to entries, comments by id.
 
 use std::collections::HashMap;
+use std::collections::hash_map;
 
-use ladder::{Address, AddressEntry, Comment, CommentOwner, Documentation, InstructionComment, Target};
+use ladder::{
+    Address, AddressEntry, Comment, CommentOwner, Diagnostic, Documentation, InstructionComment, Severity, Target,
+};
 use rss::Text;
 use rss::database::{Database, Entry};
 
@@ -102,38 +105,57 @@ pub(crate) fn documentation(database: &Database<'_>) -> Documentation {
 /// Rung comments by the id that rungs hold.
 #[derive(Default)]
 pub(crate) struct Comments {
-    by_id: HashMap<u32, (Comment, bool)>,
-    order: Vec<u32>,
+    /// Places in `all`; of several comments with one id the first.
+    by_id: HashMap<u32, usize>,
+    /// In stored order, each with whether a rung shows it.
+    all: Vec<(Comment, bool)>,
 }
 
 impl Comments {
-    pub(crate) fn new(database: &Database<'_>) -> Comments {
+    /// What deviates is reported under the name of the stream.
+    pub(crate) fn new(database: &Database<'_>, stream: &str, diagnostics: &mut Vec<Diagnostic>) -> Comments {
         let mut comments = Comments::default();
         for stored in &database.comments {
+            let place = format!("{stream}, in rung comment {}", stored.id);
+            let mut warn = |message: String| {
+                diagnostics.push(Diagnostic { severity: Severity::Warning, place: place.clone(), message });
+            };
+            let key = || target(&stored.key.decode());
             let owner = match stored.rung() {
-                Some((file, rung)) => CommentOwner::Rung { file: u16::try_from(file).unwrap_or(u16::MAX), rung },
-                None => CommentOwner::Address(target(&stored.key.decode())),
+                Some((file, rung)) => match u16::try_from(file) {
+                    Ok(file) => CommentOwner::Rung { file, rung },
+                    Err(_) => {
+                        warn(format!("expected a program file up to 65535, found {file}; its key is kept as it is"));
+                        CommentOwner::Address(key())
+                    }
+                },
+                None => CommentOwner::Address(key()),
             };
             let comment =
                 Comment { text: stored.text.decode().into_owned(), title: stored.title.decode().into_owned(), owner };
-            if comments.by_id.insert(stored.id, (comment, false)).is_none() {
-                comments.order.push(stored.id);
+            match comments.by_id.entry(stored.id) {
+                hash_map::Entry::Vacant(free) => {
+                    free.insert(comments.all.len());
+                }
+                hash_map::Entry::Occupied(_) => {
+                    warn("expected a number of its own, found that of an earlier comment, which rungs show".to_owned());
+                }
             }
+            comments.all.push((comment, false));
         }
         comments
     }
 
     /// The comment a rung refers to. Comments attached to an address can be shown by several rungs.
     pub(crate) fn shown(&mut self, id: u32) -> Option<Comment> {
-        let (comment, shown) = self.by_id.get_mut(&id)?;
+        let (comment, shown) = self.all.get_mut(*self.by_id.get(&id)?)?;
         *shown = true;
         Some(comment.clone())
     }
 
     /// The comments no rung asked for, in stored order.
     pub(crate) fn detached(&self) -> Vec<Comment> {
-        let stored = self.order.iter().filter_map(|id| self.by_id.get(id));
-        stored.filter(|(_, shown)| !shown).map(|(comment, _)| comment.clone()).collect()
+        self.all.iter().filter(|(_, shown)| !shown).map(|(comment, _)| comment.clone()).collect()
     }
 }
 

@@ -18,7 +18,7 @@ use rss::summary::{Summary, id};
 use rss::{ImageKind, Mode, Record, StreamKind};
 
 use crate::codes;
-use crate::limits::Parts;
+use crate::limits::{self, Parts};
 use documentation::Comments;
 
 /// Reads every image of a project file into the model. `source` names the file; the version and
@@ -169,7 +169,7 @@ impl<'f> ImageReader<'f> {
             return Comments::default();
         };
         image.documentation = documentation::documentation(&database);
-        Comments::new(&database)
+        Comments::new(&database, &StreamKind::MemDatabase.path(kind), &mut self.diagnostics)
     }
 
     fn data(&mut self, kind: ImageKind, image: &mut Image) {
@@ -184,8 +184,22 @@ impl<'f> ImageReader<'f> {
             (Some(only), None) | (None, Some(only)) => only,
             (None, None) => return,
         };
-        image.data_files = holder.user.iter().map(data_file).collect();
-        image.function_files = holder.function.iter().map(data_file).collect();
+        let mut total = 0;
+        let mut data_file = |stored: &rss::data::DataFile<'_>| {
+            let words = stored.data.iter().count();
+            let fits = limits::admit_words(&mut total, words);
+            if !fits {
+                self.diagnostics.push(Diagnostic {
+                    severity: Severity::Error,
+                    place: format!("{}, in file {}", StreamKind::DataFiles.path(kind), stored.number),
+                    message: limits::words_left_out(words),
+                });
+            }
+            data_file(stored, fits)
+        };
+        image.data_files = holder.user.iter().map(&mut data_file).collect();
+        image.function_files = holder.function.iter().map(&mut data_file).collect();
+        let module_files: Vec<DataFile> = holder.m.iter().map(&mut data_file).collect();
         for file in image.data_files.iter().chain(&image.function_files) {
             if let FileType::Unknown(code) = file.file_type {
                 self.diagnostics.push(Diagnostic {
@@ -197,8 +211,7 @@ impl<'f> ImageReader<'f> {
                 });
             }
         }
-        let module_files = holder.m.iter().map(data_file).filter(|file| file.elements > 0);
-        image.data_files.extend(module_files);
+        image.data_files.extend(module_files.into_iter().filter(|file| file.elements > 0));
         let status = image.data_file(FileType::S, 2);
         image.processor.deny_future_access = status.and_then(|file| file.words.get(1)).map(|word| word & 0x4000 != 0);
     }
@@ -256,7 +269,8 @@ fn count(holder: &DataHolder<'_>) -> usize {
     holder.user.len() + holder.function.len() + holder.m.len()
 }
 
-fn data_file(stored: &rss::data::DataFile<'_>) -> DataFile {
+/// A data file with its values, or without where there are too many.
+fn data_file(stored: &rss::data::DataFile<'_>, with_words: bool) -> DataFile {
     let forces = (0..stored.forces.len() / 2).filter_map(|index| stored.force(index));
     DataFile {
         number: stored.number,
@@ -265,7 +279,7 @@ fn data_file(stored: &rss::data::DataFile<'_>) -> DataFile {
         description: stored.description.decode().into_owned(),
         elements: stored.elements,
         words_per_element: stored.words,
-        words: stored.data.iter().collect(),
+        words: if with_words { stored.data.iter().collect() } else { Vec::new() },
         forces: forces.map(|(on, off)| Force { on, off }).collect(),
     }
 }

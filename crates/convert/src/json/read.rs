@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use ladder::{
-    AddressEntry, Channel, Comment, CommentOwner, Confidence, Diagnostic, Documentation, Element, Family, Image,
-    Instruction, InstructionComment, IoConfiguration, IoRange, Memory, MessageSetup, Mnemonic, Module, Operand,
+    AddressEntry, Channel, Comment, CommentOwner, Confidence, DataFile, Diagnostic, Documentation, Element, Family,
+    Image, Instruction, InstructionComment, IoConfiguration, IoRange, Memory, MessageSetup, Mnemonic, Module, Operand,
     Processor, ProgramFile, ProgramFileKind, Project, RevisionNote, Rung, Setting, Severity, Slot, Source, Target,
 };
 
@@ -14,7 +14,7 @@ use super::error::JsonError;
 use super::path::{Path, quoted};
 use super::structure::series_from;
 use super::target::target_from;
-use crate::limits::{self, MAX_PARTS, Parts};
+use crate::limits::{self, MAX_DATA_WORDS, MAX_PARTS, Parts};
 use crate::slc::rung::parse_rung;
 
 type Result<T> = std::result::Result<T, JsonError>;
@@ -100,12 +100,13 @@ fn image(doc: ImageDoc<'_>, path: &Path<'_>) -> Result<Image> {
     for comment in path.each("instruction_comments", doc.instruction_comments, instruction_comment)? {
         documentation.add_instruction_comment(comment);
     }
+    let mut words = 0;
     documentation.detached_comments = path.each("detached_comments", doc.detached_comments, detached_comment)?;
     Ok(Image {
         processor,
         program_files: program_files(doc.program_files, family, &path.member("program_files"))?,
-        data_files: path.each("data_files", doc.data_files, |file, path| data_file(file, &path))?,
-        function_files: path.each("function_files", doc.function_files, |file, path| data_file(file, &path))?,
+        data_files: data_files(doc.data_files, &mut words, &path.member("data_files"))?,
+        function_files: data_files(doc.function_files, &mut words, &path.member("function_files"))?,
         io: IoConfiguration {
             slots: path.each("io", doc.io, slot)?,
             base_unit: doc.io_base.base_unit.into_owned(),
@@ -115,6 +116,19 @@ fn image(doc: ImageDoc<'_>, path: &Path<'_>) -> Result<Image> {
         memory: doc.memory.map(memory),
         documentation,
     })
+}
+
+fn data_files(docs: Vec<DataFileDoc<'_>>, words: &mut usize, path: &Path<'_>) -> Result<Vec<DataFile>> {
+    let mut files = Vec::with_capacity(docs.len());
+    for (index, doc) in docs.into_iter().enumerate() {
+        let path = path.index(index);
+        let file = data_file(doc, &path)?;
+        if !limits::admit_words(words, file.words.len()) {
+            return Err(path.error(format!("data files of at most {MAX_DATA_WORDS} words together"), "more"));
+        }
+        files.push(file);
+    }
+    Ok(files)
 }
 
 fn processor(doc: ProcessorDoc<'_>, path: &Path<'_>) -> Result<Processor> {

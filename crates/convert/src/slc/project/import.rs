@@ -178,8 +178,13 @@ impl Importer {
 
     fn data_files(&mut self, file: &SlcFile, image: &mut Image) {
         let mut seen = HashSet::new();
+        let mut total = 0;
         for section in file.data() {
             let place = format!("DATA {}{}", section.letters, section.number.map_or(String::new(), |n| n.to_string()));
+            if !limits::admit_words(&mut total, section.words.len()) {
+                self.note(Severity::Error, place, limits::words_left_out(section.words.len()));
+                continue;
+            }
             let Some(file_type) = FileType::from_letters(&section.letters) else {
                 self.note(
                     Severity::Warning,
