@@ -11,7 +11,7 @@ pub const MAX_LISTED: usize = 5_000;
 pub const MAX_ROWS: usize = 200_000;
 
 /// Stretches compared in one report; a real program needs about one per row.
-const MAX_COMPARED: usize = 8_000_000;
+const MAX_COMPARED: usize = 4_000_000;
 
 /// What is left of the bounds while a report is made.
 pub(crate) struct Budget {

@@ -106,14 +106,18 @@ impl<'a> Record<'a> for Monitors<'a> {
         self.kind = kind;
         r.mark();
         let start = r.checkpoint();
-        match read_files(r, kind) {
-            Ok(files) if r.remaining() == 0 => self.files = files,
-            // The shape was taken from few projects with entries: another one
-            // is no damage.
-            _ => {
+        let read = read_files(r, kind).and_then(|files| match r.remaining() {
+            0 => Ok(files),
+            rest => Err(r.fault("the end of the stream", format_args!("{rest} more bytes"))),
+        });
+        match read {
+            Ok(files) => self.files = files,
+            Err(error) => {
+                // The shape was taken from few projects with entries: another one
+                // is carried, but nothing vouches for it.
                 r.rewind(&start);
-                let body = r.opaque("a monitor of another shape", r.remaining())?;
-                self.other_shape = Some(body);
+                r.deviation("a list of monitors", error)?;
+                self.other_shape = Some(r.opaque("a monitor of another shape", r.remaining())?);
             }
         }
         Ok(())
@@ -310,10 +314,12 @@ mod tests {
     #[test]
     fn another_shape_is_carried() {
         let bytes = b"\xFF\xFF\x80\0\x0C\0CWatchHolder\x07\0rest".to_vec();
-        let parsed = parse::<Monitors>(&bytes, "S", Mode::Strict);
+        let parsed = parse::<Monitors>(&bytes, "S", Mode::Permissive);
         assert_eq!((parsed.error, parsed.understood), (None, 18));
+        assert_eq!(parsed.deviations.len(), 1, "{:?}", parsed.deviations);
         assert_eq!(parsed.value.other_shape, Some(&b"\x07\0rest"[..]));
-        assert_eq!(serialize(&parsed.value), Ok(bytes));
+        assert_eq!(serialize(&parsed.value), Ok(bytes.clone()));
+        assert!(parse::<Monitors>(&bytes, "S", Mode::Strict).error.is_some());
     }
 
     #[test]
