@@ -10,7 +10,7 @@ use sim::scenario::Scenario;
 /// What the suite must at least hold.
 const LEAST: usize = 600;
 
-/// Worked examples the suite is built around; notes name them by number.
+/// Worked examples the suite is built around; sources name them by number.
 const EXAMPLES: u32 = 135;
 
 /// Tags of evidence and the documents they stand for.
@@ -112,18 +112,18 @@ fn every_case_names_evidence_and_expects_something() {
     }
 }
 
-/// The numbers a note names: `worked examples 7, 8 and 9`, `worked examples 1 to 4`.
-fn examples(note: &str) -> BTreeSet<u32> {
+/// The numbers a source names: `worked examples 7, 8 and 9`, `worked examples 1 to 4`.
+fn examples(text: &str) -> BTreeSet<u32> {
     let mut found = BTreeSet::new();
-    for (at, word) in note.match_indices("worked example") {
+    for (at, word) in text.match_indices("worked example") {
         let mut range = false;
-        let list = note.get(at + word.len()..).unwrap_or("").trim_start_matches('s');
+        let list = text.get(at + word.len()..).unwrap_or("").trim_start_matches('s');
         for word in list.split([' ', ',']).filter(|word| !word.is_empty()) {
-            match (word.trim_end_matches([':', ';']).parse::<u32>(), word) {
+            match (word.trim_end_matches([':', ';', ')']).parse::<u32>(), word) {
                 (Ok(number), _) => {
                     let first = if range { found.last().copied().unwrap_or(number) } else { number };
                     found.extend(first..=number);
-                    if word.ends_with([':', ';']) {
+                    if word.ends_with([':', ';', ')']) {
                         break;
                     }
                 }
@@ -137,8 +137,8 @@ fn examples(note: &str) -> BTreeSet<u32> {
 
 #[test]
 fn every_worked_example_has_a_case() {
-    let notes = suite().into_iter().filter_map(|(_, _, scenario)| scenario.note);
-    let named: BTreeSet<u32> = notes.flat_map(|note| examples(&note)).collect();
+    let sources = suite().into_iter().flat_map(|(_, _, scenario)| scenario.source);
+    let named: BTreeSet<u32> = sources.flat_map(|source| examples(&source)).collect();
     let missing: Vec<u32> = (1..=EXAMPLES).filter(|number| !named.contains(number)).collect();
     assert!(missing.is_empty(), "no case names worked examples {missing:?}");
     assert!(named.last() <= Some(&EXAMPLES), "{named:?}");
