@@ -3,11 +3,22 @@
 //! Everything is measured once from the inside out, with the width left at its depth, and then
 //! placed from the outside in, so the cost grows with the number of elements.
 
-use ladder::{Branch, Element, Series};
+use ladder::{Element, Series};
 
-use crate::face::Source;
-use crate::leaf::{LEAF_MIN, Leaf, leaf};
+use crate::face::{Face, Source};
+use crate::leaf::{LEAF_MIN, Leaf, leaf, leaf_with_legs};
 use crate::scene::{Direction, Item, Shape};
+
+/// What stands on a wire, in a form that knows no dialect.
+#[derive(Debug)]
+pub(crate) enum Part {
+    /// An instruction.
+    Leaf(Face),
+    /// Parallel legs, top leg first.
+    Legs(Vec<Vec<Part>>),
+    /// A box with several legs that each come from the left rail: name and way of each, top leg first.
+    Box(Face, Vec<(&'static str, Vec<Part>)>),
+}
 
 /// Branches nest at most this deep in a drawing.
 pub(crate) const MAX_DEPTH: usize = 32;
@@ -21,11 +32,13 @@ pub(crate) enum NotDrawn {
     Width,
     /// More elements than [`MAX_ELEMENTS`].
     Size,
+    /// It is not contacts between rails; why.
+    Form(domore::circuit::NotDrawable),
 }
 
 /// Instructions, branches and legs of one drawing. Editors allow some hundred in a rung; a drawing takes
 /// a kilobyte and more for each.
-const MAX_ELEMENTS: usize = 20_000;
+pub(crate) const MAX_ELEMENTS: usize = 20_000;
 
 /// Whether a rung can be drawn with memory that a rung is worth. Stops counting where it cannot.
 pub(crate) fn is_drawable(series: &Series) -> bool {
@@ -46,8 +59,24 @@ pub(crate) fn is_drawable(series: &Series) -> bool {
     true
 }
 
+/// The parts of a series.
+pub(crate) fn parts(source: &Source<'_>, series: &Series, depth: usize) -> Result<Vec<Part>, NotDrawn> {
+    if depth > MAX_DEPTH {
+        return Err(NotDrawn::Depth);
+    }
+    let part = |element: &Element| match element {
+        Element::Instruction(instruction) => Ok(Part::Leaf(source.face(instruction))),
+        Element::Branch(branch) => {
+            branch.legs.iter().map(|leg| parts(source, leg, depth + 1)).collect::<Result<_, _>>().map(Part::Legs)
+        }
+    };
+    series.iter().map(part).collect()
+}
+
 /// Columns a branch needs besides its legs: two rails and a stub of wire outside each.
 const BRANCH_SIDES: usize = 4;
+/// Columns between the left side of a box with several legs and the ways to them: stub and rail.
+const BOX_SIDES: usize = 2;
 /// Columns at the left side of a line that continues another one.
 const INDENT: usize = 2;
 /// Columns that lines of a wrapped series leave for the wires between them.
@@ -65,6 +94,13 @@ struct Block {
 enum Content {
     Leaf(Vec<Item>),
     Legs(Vec<Measured>),
+    /// Ways to the legs of a box, and the box with its columns and the row of its first leg.
+    Box {
+        ways: Vec<Measured>,
+        items: Vec<Item>,
+        width: usize,
+        first: usize,
+    },
 }
 
 /// A measured series.
@@ -89,35 +125,35 @@ struct Line {
 }
 
 /// Measures a series for at most `limit` columns.
-pub(crate) fn measure(source: &Source<'_>, series: &Series, limit: usize, depth: usize) -> Result<Measured, NotDrawn> {
+pub(crate) fn measure(series: &[Part], limit: usize, depth: usize) -> Result<Measured, NotDrawn> {
     if depth > MAX_DEPTH {
         return Err(NotDrawn::Depth);
     }
     let inner = if series.len() > 1 { limit.saturating_sub(WRAP_SIDES) } else { limit };
     let mut blocks = Vec::with_capacity(series.len());
-    for (index, element) in series.iter().enumerate() {
-        blocks.push(match element {
-            Element::Instruction(instruction) => {
+    for (index, part) in series.iter().enumerate() {
+        blocks.push(match part {
+            Part::Leaf(face) => {
                 if inner < LEAF_MIN {
                     return Err(NotDrawn::Width);
                 }
-                let face = source.face(instruction);
-                let Leaf { width, above, below, items } = leaf(&face, inner);
+                let Leaf { width, above, below, items } = leaf(face, inner);
                 // Rungs end in outputs, so an unknown instruction behind conditions is taken for one.
                 let output = face.output.unwrap_or(index > 0 && index + 1 == series.len());
                 Block { width, above, below, output, content: Content::Leaf(items) }
             }
-            Element::Branch(branch) => measure_branch(source, branch, inner, depth)?,
+            Part::Legs(legs) => measure_branch(legs, inner, depth)?,
+            Part::Box(face, legs) => measure_box(face, legs, inner, depth)?,
         });
     }
     Ok(cut(blocks, limit))
 }
 
-fn measure_branch(source: &Source<'_>, branch: &Branch, limit: usize, depth: usize) -> Result<Block, NotDrawn> {
+fn measure_branch(parts: &[Vec<Part>], limit: usize, depth: usize) -> Result<Block, NotDrawn> {
     let inner = limit.saturating_sub(BRANCH_SIDES);
-    let mut legs = Vec::with_capacity(branch.legs.len());
-    for leg in &branch.legs {
-        legs.push(measure(source, leg, inner, depth + 1)?);
+    let mut legs = Vec::with_capacity(parts.len());
+    for leg in parts {
+        legs.push(measure(leg, inner, depth + 1)?);
     }
     let width = legs.iter().map(|leg| leg.width).max().unwrap_or(0) + BRANCH_SIDES;
     let output = legs.iter().any(|leg| leg.output);
@@ -125,6 +161,43 @@ fn measure_branch(source: &Source<'_>, branch: &Branch, limit: usize, depth: usi
     // One row between legs keeps the bit of one apart from the symbol of the next.
     let rows: usize = legs.iter().map(|leg| leg.above + 1 + leg.below).sum::<usize>() + legs.len().saturating_sub(1);
     Ok(Block { width, above, below: rows.saturating_sub(above + 1), output, content: Content::Legs(legs) })
+}
+
+/// A box whose legs enter its left side at the rows where their ways end.
+fn measure_box(face: &Face, legs: &[(&'static str, Vec<Part>)], limit: usize, depth: usize) -> Result<Block, NotDrawn> {
+    // The box gets what it needs up to half of the place; conditions can go on below, its rows too.
+    let room = limit.saturating_sub(BOX_SIDES);
+    if room < 2 * LEAF_MIN {
+        return Err(NotDrawn::Width);
+    }
+    let own = leaf_with_legs(face, &legs.iter().map(|(name, _)| (*name, 0)).collect::<Vec<_>>(), room / 2);
+    let mut ways = Vec::with_capacity(legs.len());
+    for (_, leg) in legs {
+        ways.push(measure(leg, room - own.width, depth + 1)?);
+    }
+    // Rows from the wire of the first way: where each way ends, and the last row of all.
+    let mut entry = 0;
+    let mut bottom = 0;
+    let mut ends = Vec::with_capacity(legs.len());
+    for (index, way) in ways.iter().enumerate() {
+        if index > 0 {
+            entry = bottom + 2 + way.above;
+        }
+        bottom = entry + way.below;
+        ends.push(entry + way.exit());
+    }
+    let first = ends.first().copied().unwrap_or(0);
+    let pins: Vec<_> = legs.iter().zip(&ends).map(|((name, _), end)| (*name, end - first)).collect();
+    let Leaf { width, above, below, items } = leaf_with_legs(face, &pins, room / 2);
+    let own_above = ways.first().map_or(0, |way| way.above);
+    let ways_width = ways.iter().map(|way| way.width).max().unwrap_or(0);
+    Ok(Block {
+        width: BOX_SIDES + ways_width + width,
+        above: own_above.max(above.saturating_sub(first)),
+        below: bottom.max(first + below),
+        output: true,
+        content: Content::Box { ways, items, width, first: above },
+    })
 }
 
 /// Cuts blocks into lines.
@@ -154,6 +227,16 @@ fn cut(blocks: Vec<Block>, limit: usize) -> Measured {
     // The turn of the wire takes a row between two lines.
     let rows: usize = lines.iter().map(|line| line.above + 1 + line.below).sum::<usize>() + last;
     Measured { lines, width, above, below: rows - above - 1, output }
+}
+
+impl Measured {
+    /// Rows from the wire it starts on to the one it leaves on.
+    fn exit(&self) -> usize {
+        match self.lines.last() {
+            Some(last) if self.lines.len() > 1 => self.below - last.below,
+            _ => 0,
+        }
+    }
 }
 
 impl Line {
@@ -201,9 +284,15 @@ pub(crate) fn place(items: &mut Vec<Item>, series: Measured, x: usize, y: usize,
 /// The last line: conditions at the left, outputs at the right, wire between.
 fn place_last(items: &mut Vec<Item>, line: Line, start: usize, y: usize, end: usize) {
     let Line { mut blocks, right, .. } = line;
-    let outputs = blocks.split_off(right.min(blocks.len()));
+    let mut outputs = blocks.split_off(right.min(blocks.len()));
     let outputs_width: usize = outputs.iter().map(|block| block.width).sum();
     let left_end = place_blocks(items, blocks, start, y);
+    if let [Block { content: Content::Box { .. }, width, .. }] = outputs.as_mut_slice() {
+        // Its ways come from the left rail, wherever the box stands.
+        *width = end.saturating_sub(left_end).max(*width);
+        place_blocks(items, outputs, left_end, y);
+        return;
+    }
     let right_start = end.saturating_sub(outputs_width).max(left_end);
     items.push(Item::across(left_end, right_start, y));
     place_blocks(items, outputs, right_start, y);
@@ -216,6 +305,11 @@ fn place_blocks(items: &mut Vec<Item>, blocks: Vec<Block>, mut x: usize, y: usiz
         match block.content {
             Content::Leaf(own) => items.extend(own.into_iter().map(|item| item.moved(x, top))),
             Content::Legs(legs) => place_legs(items, legs, x, y, block.width),
+            Content::Box { ways, items: own, width, first } => {
+                let at = x + block.width - width;
+                let row = place_ways(items, ways, x, y, at);
+                items.extend(own.into_iter().map(|item| item.moved(at, row.saturating_sub(first))));
+            }
         }
         x += block.width;
     }
@@ -244,4 +338,24 @@ fn place_legs(items: &mut Vec<Item>, legs: Vec<Measured>, x: usize, y: usize, wi
     }
     items.push(Item::down(left, y, last.0));
     items.push(Item::down(right, y, last.1));
+}
+
+/// Ways from a rail at the left side to column `end`; returns the row on which the first one ends.
+fn place_ways(items: &mut Vec<Item>, ways: Vec<Measured>, x: usize, y: usize, end: usize) -> usize {
+    let left = x + 1;
+    items.push(Item::across(x, left, y));
+    let mut entry = y;
+    let mut bottom = None;
+    let mut first = None;
+    for way in ways {
+        if let Some(bottom) = bottom {
+            entry = bottom + 2 + way.above;
+        }
+        bottom = Some(entry + way.below);
+        items.push(Item::across(left, left + 1, entry));
+        let row = place(items, way, left + 1, entry, end.saturating_sub(left + 1));
+        first.get_or_insert(row);
+    }
+    items.push(Item::down(left, y, entry));
+    first.unwrap_or(y)
 }

@@ -32,7 +32,16 @@ pub(crate) fn leaf(face: &Face, limit: usize) -> Leaf {
     let limit = limit.max(LEAF_MIN);
     match &face.body {
         Body::Symbol { sign, above, below } => symbol(&face.labels, sign, above, below, limit),
-        Body::Box { name, title, rows, flags } => boxed(&face.labels, name, title, rows, flags, limit),
+        Body::Box { name, title, rows, flags } => boxed(&face.labels, name, title, rows, flags, &[], limit),
+    }
+}
+
+/// Draws a box whose legs enter at its left side: name and row of each, from the row of the first.
+pub(crate) fn leaf_with_legs(face: &Face, legs: &[(&'static str, usize)], limit: usize) -> Leaf {
+    let limit = limit.max(LEAF_MIN);
+    match &face.body {
+        Body::Symbol { .. } => leaf(face, limit),
+        Body::Box { name, title, rows, flags } => boxed(&face.labels, name, title, rows, flags, legs, limit),
     }
 }
 
@@ -100,11 +109,13 @@ fn boxed(
     title: &str,
     rows: &[Row],
     flags: &[&'static str],
+    legs: &[(&'static str, usize)],
     limit: usize,
 ) -> Leaf {
     let flag_width = flags.iter().map(|flag| flag.len() + 3).max().unwrap_or(0);
+    let leg_width = legs.iter().map(|(name, _)| name.len() + 2).max().unwrap_or(0);
     // Stubs of the wire at both ends, frame and a space inside it at both sides.
-    let room = (limit - 6).saturating_sub(flag_width).min(TEXT_MAX);
+    let room = (limit - 6).saturating_sub(flag_width + leg_width).min(TEXT_MAX);
     let lines = lines(title, rows, room);
     let text = lines.iter().map(Line::width).max().unwrap_or(0).max(width(name) + 2).min(room);
 
@@ -117,13 +128,19 @@ fn boxed(
     };
     let top = labels.len();
     let wire = top + 1;
-    let count = (extra.len() + lines.len()).max((flags.len() * 2).saturating_sub(1));
-    let frame = text + 4;
+    let last_leg = legs.last().map_or(0, |(_, row)| row + 1);
+    let count = (extra.len() + lines.len()).max((flags.len() * 2).saturating_sub(1)).max(last_leg);
+    let frame = text + 4 + leg_width;
     let mut leaf = Leaf { above: wire, below: count, ..Leaf::default() };
     leaf.width = (1 + frame + flag_width + 1).max(widest(&labels) + 2);
 
     let items = &mut leaf.items;
-    items.push(Item::across(0, 1, wire));
+    for row in legs.iter().map(|(_, row)| *row).chain(legs.is_empty().then_some(0)) {
+        items.push(Item::across(0, 1, wire + row));
+    }
+    for (name, row) in legs {
+        items.push(Item::text(3, wire + row, Role::Name, *name));
+    }
     items.push(Item { x: 1, y: top, shape: Shape::Frame { width: frame, height: count + 2, name: side } });
     items.push(Item::across(frame, leaf.width, wire));
     for (index, flag) in flags.iter().enumerate() {
@@ -138,7 +155,7 @@ fn boxed(
     }
     let extra = extra.into_iter().map(|text| Line::Left(Role::BoxTitle, text));
     for (row, line) in extra.chain(lines).enumerate() {
-        line.place(items, wire + row, text);
+        line.place(items, leg_width, wire + row, text);
     }
     leaf
 }
@@ -174,15 +191,16 @@ impl Line {
         }
     }
 
-    fn place(self, items: &mut Vec<Item>, y: usize, room: usize) {
+    fn place(self, items: &mut Vec<Item>, left: usize, y: usize, room: usize) {
+        let left = left + 3;
         match self {
-            Line::Left(role, text) => items.push(Item::text(3, y, role, text)),
+            Line::Left(role, text) => items.push(Item::text(left, y, role, text)),
             Line::Pair(name, role, text, live) => {
                 if !name.is_empty() {
-                    items.push(Item::text(3, y, Role::Name, name));
+                    items.push(Item::text(left, y, Role::Name, name));
                 }
                 if !text.is_empty() {
-                    let x = 3 + room.saturating_sub(width(&text) + 1);
+                    let x = left + room.saturating_sub(width(&text) + 1);
                     let text = if live { text + "<" } else { text };
                     items.push(Item::text(x, y, role, text));
                 }

@@ -27,6 +27,7 @@
 //! grid, which any other painter can use; [`rung()`] paints them as text. This crate reads no files and
 //! knows no terminal: width and colour are given in [`Style`].
 
+pub mod domore;
 mod face;
 mod layout;
 mod leaf;
@@ -112,7 +113,7 @@ pub fn scene(
 ) -> scene::Scene {
     let Some(rung) = file.rungs.get(index) else { return scene::Scene::default() };
     let source = face::Source { image, file: file.number, edited: rung.edited, documentation, style };
-    rung::compose(&source, file, index, rung)
+    rung::scene(&source, file, index, rung)
 }
 
 /// The head of a program file, as at the top of printed pages:
