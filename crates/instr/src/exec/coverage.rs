@@ -39,8 +39,10 @@ const APPROXIMATE: &[(&str, &str)] = &[
 ];
 
 const UNDOCUMENTED: &[(&str, &str)] = &[
-    ("RMP", "the layout of its control block and the shape of its curves are not published"),
-    ("RPC", "how the checksum of a program is computed is not published"),
+    // SLC 4-22 was seen: it validates its parameters and ramps while the rung is true, holds its time while it is false,
+    // and is retentive. The pages before it, with the seven words, were not.
+    ("RMP", "no page with the layout of its control block and the equations of its curves was found"),
+    ("RPC", "how the controller computes the checksum of a program was not found"),
 ];
 
 #[cfg(test)]

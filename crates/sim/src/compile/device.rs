@@ -79,9 +79,13 @@ impl Compiler<'_> {
             "PTO" | "PWM" => {
                 self.approximate(
                     instruction,
-                    "no pulses are produced: the layout of its function file is not published, so none of its bits change",
+                    "no pulses are produced: the places of its status bits in the function file were not found, so none of \
+                     them change",
                 );
                 self.always(Block::Pulse)
+            }
+            "BTR" | "BTW" | "CEM" | "DEM" | "EEM" => {
+                Err("it speaks to a module or a network, and the layout of its control block was not found".to_owned())
             }
             _ => Err("this instruction is not simulated".to_owned()),
         }
