@@ -81,6 +81,8 @@ fn a_value_change_dump_follows_its_grammar() {
         })
         .collect();
     assert_eq!(codes.iter().map(|code| code.0).collect::<Vec<_>>(), ["16", "1"]);
+    // A colon in a name makes GTKWave drop the variable.
+    assert!(head.contains(" T4_0_ACC $end") && head.contains(" O_0_0/0 $end"), "{head}");
     let (mut time, mut contactor) = (None, Vec::new());
     for line in body.lines().filter(|line| !line.starts_with('$')) {
         if let Some(now) = line.strip_prefix('#') {
@@ -147,4 +149,54 @@ fn scenarios_on_projects_and_broken_ones() {
     assert!(report.contains("absent.RSS"), "{report}");
     assert!(report.ends_with("1 passed, 0 failed, 3 not run; 2 expectations, 301 scans\n"), "{report}");
     assert!(xml.contains("tests=\"4\" failures=\"0\" errors=\"3\""), "{xml}");
+}
+
+/// What is only approximated stands in every report, with its rung; what cannot run is refused with it.
+#[test]
+fn approximations_and_refusals_name_their_rung() {
+    let folder = std::env::temp_dir().join(format!("rungs-approximations-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).expect("a scenario");
+        path.to_str().expect("a path").to_owned()
+    };
+    let steps = "[[step]]\nscans = 1\n";
+    let pulses = "family = \"micrologix-1400\"\nladder = \"MOV 1 N7:0\\nXIC B3:0/0 PTO 0\"\n";
+    let ramp = "family = \"slc-5/03\"\nladder = \"MOV 1 N7:0\\nXIC B3:0/0 RMP N7:10 N7:20\"\n";
+    let (pulses, ramp) =
+        (write("pulses.toml", &format!("{pulses}{steps}")), write("ramp.toml", &format!("{ramp}{steps}")));
+    let junit = folder.join("junit.xml");
+    let output = rungs(&["test", &pulses, &ramp, "--junit", junit.to_str().expect("a path")]);
+    let report = text(&output.stdout);
+    assert!(report.contains("approximate: file 2 rung 1: PTO 0: no pulses are produced"), "{report}");
+    assert!(report.contains("file 2 rung 1: RMP N7:10 N7:20: no page"), "{report}");
+    assert!(report.contains("1 of them ran with instructions that are only approximated"), "{report}");
+    assert_eq!(output.status.code(), Some(1));
+    let xml = std::fs::read_to_string(&junit).expect("a report");
+    assert!(xml.contains("<system-out>approximate: file 2 rung 1: PTO 0"), "{xml}");
+    assert!(xml.contains("<error message=\"the program cannot be simulated; file 2 rung 1: RMP"), "{xml}");
+    let quiet = text(&rungs(&["test", "--quiet", &pulses]).stdout);
+    assert!(quiet.contains("only approximated"), "{quiet}");
+    let json = text(&rungs(&["test", "--json", &pulses]).stdout);
+    assert!(json.contains("\"approximations\":[\"file 2 rung 1: PTO 0"), "{json}");
+
+    let program = folder.join("program.slc");
+    let program = program.to_str().expect("a path");
+    let export = rungs(&["export", "--to", "slc", "examples/motor/motor.RSS", "--output", program]);
+    assert!(export.status.success(), "{}", text(&export.stderr));
+    let changed = std::fs::read_to_string(program).expect("a project").replacen("OTE O:0.0/0", "RPC 0 N7:0", 1);
+    std::fs::write(program, changed).expect("a project");
+    let output = rungs(&["run", program, "--for", "1s", "--watch", "O:0/0"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("file 2 rung "), "{}", text(&output.stderr));
+    for (form, wanted) in
+        [("json", "\"approximations\":[\"file 2 rung "), ("vcd", "$comment approximate: file 2 rung ")]
+    {
+        let rest = ["--accept-unsupported", "--for", "20ms", "--watch", "O:0/0", "--format", form];
+        let output = rungs(&[&["run", program][..], &rest].concat());
+        assert!(text(&output.stdout).contains(wanted), "{}", text(&output.stdout));
+        assert!(text(&output.stderr).contains("approximate: file 2 rung "), "{}", text(&output.stderr));
+    }
+    std::fs::remove_dir_all(&folder).expect("the folder goes");
 }

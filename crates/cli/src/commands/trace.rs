@@ -281,10 +281,11 @@ fn code(mut index: usize) -> String {
     }
 }
 
-/// Names end at blanks, and viewers take dots for scopes and brackets for bit ranges.
+/// Names end at blanks, and viewers take dots for scopes, brackets for bit ranges, and colons too: GTKWave
+/// drops a variable with a colon in its name.
 fn vcd_name(text: &str) -> String {
     let plain = |c: char| match c {
-        '.' | '[' | ']' | '$' | '\\' => '_',
+        '.' | ':' | '[' | ']' | '$' | '\\' => '_',
         c if c.is_ascii_graphic() => c,
         _ => '_',
     };
@@ -367,7 +368,7 @@ mod tests {
 
     #[test]
     fn names_hold_nothing_a_viewer_misreads() {
-        assert_eq!(vcd_name("T4:0.ACC"), "T4:0_ACC");
-        assert_eq!(vcd_name("2:4.1 TON T4:0 0.01 100 0"), "2:4_1_TON_T4:0_0_01_100_0");
+        assert_eq!(vcd_name("T4:0.ACC"), "T4_0_ACC");
+        assert_eq!(vcd_name("2:4.1 TON T4:0 0.01 100 0"), "2_4_1_TON_T4_0_0_01_100_0");
     }
 }
