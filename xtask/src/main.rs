@@ -18,7 +18,7 @@ struct Chore {
 const CHORES: &[Chore] = &[
     Chore {
         name: "ci",
-        help: "everything below but `bench` and `bless`: what must pass before a change lands",
+        help: "everything below but `nightly`, `bench` and `bless`: what must pass before a change lands",
         run: ci,
     },
     Chore { name: "fmt", help: "check formatting", run: |_| cargo(&["fmt", "--all", "--check"]) },
@@ -35,6 +35,11 @@ const CHORES: &[Chore] = &[
         run: fuzz,
     },
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
+    Chore {
+        name: "nightly",
+        help: "simulate at length: 10,000 random programs against the interpreter, 10,000 scans of every project",
+        run: |_| nightly(),
+    },
     Chore {
         name: "bless",
         help: "rewrite generated pages and snapshots; read the difference before committing",
@@ -88,6 +93,15 @@ fn doc() -> Outcome {
 
 fn test() -> Outcome {
     cargo(&["test", "--workspace", "--no-fail-fast"])
+}
+
+/// What `test` does with 500 programs and 300 scans, at full length.
+fn nightly() -> Outcome {
+    for (test, variable) in [("differential", "RUNGS_CASES"), ("corpus", "RUNGS_SCANS")] {
+        let mut command = cargo_command(&["test", "--release", "--package", "sim", "--test", test]);
+        run(command.args(["--", "--nocapture"]).env(variable, "10000"))?;
+    }
+    Ok(())
 }
 
 fn bless() -> Outcome {

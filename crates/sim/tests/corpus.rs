@@ -43,6 +43,7 @@ fn every_project_runs() {
     let scans: u32 = std::env::var("RUNGS_SCANS").ok().and_then(|text| text.parse().ok()).unwrap_or(300);
     let mut approximated: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut refused: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
     let (mut programs, mut clean, mut instructions) = (0, 0, 0u64);
     let mut faults: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut busy = Duration::ZERO;
@@ -61,6 +62,8 @@ fn every_project_runs() {
             continue;
         }
         programs += 1;
+        let class = project.main.processor.family.id();
+        *classes.entry(class).or_default() += 1;
         let strict = Program::compile(&project.main, &Options::default());
         let program = match strict {
             Ok(program) => {
@@ -71,7 +74,7 @@ fn every_project_runs() {
                 let mut seen = std::collections::BTreeSet::new();
                 for refusal in &refusals {
                     let mnemonic = refusal.site.as_ref().map_or("", |s| s.text.split(' ').next().unwrap_or(""));
-                    let reason = format!("{mnemonic}: {}", kind(&refusal.why));
+                    let reason = format!("{class}, {mnemonic}: {}", kind(&refusal.why));
                     let entry = refused.entry(reason.clone()).or_default();
                     entry.0 += 1;
                     if seen.insert(reason) {
@@ -88,7 +91,7 @@ fn every_project_runs() {
         let mut seen = std::collections::BTreeSet::new();
         for approximation in program.approximations() {
             let mnemonic = approximation.site.as_ref().map_or("", |s| s.text.split(' ').next().unwrap_or(""));
-            let reason = format!("{mnemonic}: {}", kind(&approximation.why));
+            let reason = format!("{class}, {mnemonic}: {}", kind(&approximation.why));
             let entry = approximated.entry(reason.clone()).or_default();
             entry.0 += 1;
             if seen.insert(reason) {
@@ -111,6 +114,7 @@ fn every_project_runs() {
     println!(
         "{programs} programs, {clean} without refusal, {scans} scans each, {instructions} instructions in {busy:?}"
     );
+    println!("{classes:?}");
     for (reason, (count, projects)) in &refused {
         println!("refused {count:5} in {projects:3}: {reason}");
     }
