@@ -7,12 +7,21 @@
 //!
 //! Like every dialect this crate opens no file and reads no clock.
 
+pub mod address;
+pub mod choices;
 pub mod circuit;
+pub mod counter;
 pub mod diagnostic;
+pub mod documentation;
+pub mod engine;
 pub mod instruction;
+pub mod math;
+pub mod memory;
 pub mod program;
 pub mod stack;
 pub mod text;
+pub mod timer;
+pub mod xref;
 
 pub use diagnostic::{Diagnostic, Problem};
 pub use program::{CodeBlock, CodeKind, Comment, Instruction, Part, Project, Rung};
