@@ -7,6 +7,7 @@ use ladder::{Image, Instruction};
 
 use super::Options;
 use super::allocate::{Block, Element, Places};
+use super::control::Flow;
 use super::emit::Emitter;
 use super::facts::Facts;
 use super::marks::{Mark, Note};
@@ -48,6 +49,12 @@ pub struct Context<'a> {
     /// Helpers with a meaning: what they are for, in words, and a proposed nickname.
     pub helpers: BTreeMap<Element, Helper>,
     named: BTreeMap<String, Element>,
+    /// The real-time clock file is read.
+    pub reads_rtc: bool,
+    /// Where the rung at hand stands.
+    pub(super) flow: Option<Flow>,
+    /// Names of the subroutines that called files became.
+    pub(super) subroutines: BTreeMap<u16, String>,
     /// Status words that are computed at the beginning of each scan.
     pub status_words: BTreeSet<u16>,
     /// Things other than rungs the program needs.
@@ -91,6 +98,9 @@ impl<'a> Context<'a> {
             conditions: BTreeSet::new(),
             helpers: BTreeMap::new(),
             named: BTreeMap::new(),
+            reads_rtc: false,
+            flow: None,
+            subroutines: BTreeMap::new(),
             status_words: BTreeSet::new(),
             needs: Needs::default(),
         }

@@ -8,7 +8,7 @@
 //! * `allocate`, `map_file`: where data lies; `facts`: what the program does with it
 //! * `operand`, `emit`: operands and rungs of the result
 //! * `table`: one row per instruction, in the modules of their families
-//! * `control`: program files, subroutines, jumps, zones
+//! * `plan`, `control`: program files, subroutines, jumps, zones
 //! * `frame`: what the program needs before its first rung and behind its last one
 //! * `docs`, `initial`, `report`: documentation, data, what a person reads
 
@@ -17,18 +17,289 @@ mod bits;
 pub mod context;
 mod control;
 mod counters;
+pub mod docs;
 pub mod emit;
 pub mod facts;
+mod frame;
+pub mod initial;
+pub mod map_file;
 pub mod marks;
 pub mod operand;
+mod plan;
+mod project;
 mod rung;
 mod status;
 mod table;
 mod timers;
+
+use ladder::Image;
+
+use crate::slc::rung::rung_text;
+use allocate::Places;
+use context::{Context, Person};
+use control::Flow;
+use emit::{Contact, Emitter};
+use facts::Facts;
+pub use initial::Initial;
+pub use map_file::{MapError, MapRow};
+pub use marks::{Mark, Note};
+use plan::{Item, Plan, Zone};
 
 /// Settings of a migration.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Use only forms that Designer itself has written or read; what needs others is left to a person.
     pub only_confirmed: bool,
+}
+
+/// How far a rung's conversion holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Verdict {
+    /// It does what the original does.
+    Exact,
+    /// It does so under the conditions stated.
+    Condition,
+    /// It stands as a `NOP`: a person has to write it.
+    Person,
+}
+
+impl Verdict {
+    /// `exact`, `condition`, `person`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Verdict::Exact => "exact",
+            Verdict::Condition => "condition",
+            Verdict::Person => "person",
+        }
+    }
+}
+
+/// What became of one rung of the original.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RungResult {
+    /// Program file.
+    pub file: u16,
+    /// Rung number.
+    pub rung: u32,
+    /// The original as rung text.
+    pub original: String,
+    /// Code block of the result.
+    pub block: String,
+    /// Rung in that block, from 0.
+    pub block_rung: u32,
+    /// The instructions of the result, one per line.
+    pub code: Vec<String>,
+    /// How far it holds.
+    pub verdict: Verdict,
+    /// Conditions, or the reason why it needs a person.
+    pub notes: Vec<Note>,
+}
+
+/// The result.
+#[derive(Clone, Debug)]
+pub struct Migration {
+    /// The project for Designer's import.
+    pub project: domore::Project,
+    /// One per rung of the original, by file and rung; END rungs are not counted.
+    pub rungs: Vec<RungResult>,
+    /// Where data lies.
+    pub places: Places,
+    /// Rows of the address map.
+    pub map: Vec<MapRow>,
+    /// Values of the data table that are not zero.
+    pub initial: Vec<Initial>,
+    /// What concerns the program as a whole.
+    pub notes: Vec<Note>,
+}
+
+impl Migration {
+    /// How many rungs have a verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rungs.iter().filter(|rung| rung.verdict == verdict).count()
+    }
+}
+
+/// Converts a program.
+///
+/// `map` holds a person's choices of addresses, rows of an address map that was written before; empty
+/// for an allocation of its own.
+///
+/// # Errors
+/// A row of the map that does not fit the program, or places that overlap.
+pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migration, MapError> {
+    let facts = Facts::of(image);
+    let mut places = Places::automatic(image, &facts);
+    map_file::apply(&mut places, map)?;
+    let plan = plan::plan(image);
+    let mut context = Context::new(image, &facts, options, places);
+    context.reads_rtc = facts.file(ladder::FileType::RTC, 0) != facts::FileUse::default();
+    for (file, block) in &plan.subroutines {
+        if let Some(block) = plan.blocks.get(*block) {
+            context.subroutines.insert(*file, block.name.clone());
+        }
+    }
+    let mut rungs = Vec::new();
+    let mut blocks: Vec<domore::CodeBlock> = plan.blocks.iter().map(|block| code_block(&block.name)).collect();
+    for (planned, made) in plan.blocks.iter().zip(&mut blocks) {
+        context.conditional = planned.conditional;
+        for item in &planned.items {
+            made.rungs.push(item_rung(&mut context, &plan, item, &planned.name, made.rungs.len(), &mut rungs));
+        }
+    }
+    let initial = initial::values(image, &facts, &context.places);
+    finish(&mut context, &mut blocks, &initial, &mut rungs);
+    rungs.sort_by_key(|rung| (rung.file, rung.rung));
+    let notes = notes(image, &context);
+    let map = map_file::rows(image, &context);
+    let project = project::project(&context, blocks);
+    Ok(Migration { project, rungs, places: context.places, map, initial, notes })
+}
+
+fn code_block(name: &str) -> domore::CodeBlock {
+    let kind = if name.starts_with('$') { domore::CodeKind::Program } else { domore::CodeKind::Subroutine };
+    domore::CodeBlock { kind, name: name.to_owned(), ..domore::CodeBlock::default() }
+}
+
+/// The rung of an item; a rung of the original adds its result.
+fn item_rung(
+    context: &mut Context<'_>,
+    plan: &Plan,
+    item: &Item,
+    block: &str,
+    block_rung: usize,
+    rungs: &mut Vec<RungResult>,
+) -> domore::Rung {
+    let mut e = Emitter::new();
+    match item {
+        Item::Enter(frame) => {
+            let file = plan.frames.get(*frame).map_or(0, |frame| frame.file);
+            let register = control::jump_register(context, file);
+            e.mov("0", &register);
+            domore::Rung::new(e.finish())
+        }
+        Item::Segment { frame, from, block } => {
+            let file = plan.frames.get(*frame).map_or(0, |frame| frame.file);
+            let register = control::jump_register(context, file);
+            e.and_compare(emit::Relation::LessOrEqual, &register, &from.to_string());
+            let name = plan.blocks.get(*block).map_or("", |block| &block.name);
+            control::append_call(&mut e, name);
+            domore::Rung::new(e.finish())
+        }
+        Item::Rung(place) => original_rung(context, plan, place, block, block_rung, rungs),
+    }
+}
+
+fn original_rung(
+    context: &mut Context<'_>,
+    plan: &Plan,
+    place: &plan::Place,
+    block: &str,
+    block_rung: usize,
+    rungs: &mut Vec<RungResult>,
+) -> domore::Rung {
+    let empty = ladder::Rung::default();
+    let frame = plan.frames.get(place.frame);
+    let file = frame.map_or(0, |frame| frame.file);
+    let image = context.image;
+    let rung =
+        image.program_file(file).and_then(|file| file.rungs.get(usize::try_from(place.rung).ok()?)).unwrap_or(&empty);
+    let original = rung_text(rung);
+    context.conditions.clear();
+    context.flow = frame.map(|frame| Flow {
+        file,
+        labels: frame.labels.clone(),
+        end: frame.end,
+        jumps: frame.jumps,
+        zone: place.zone,
+        in_place: place.in_place,
+    });
+    let converted = match &place.problem {
+        Some(problem) => Err(Person(problem.clone())),
+        None => convert(context, file, place.zone, rung),
+    };
+    let (verdict, notes, instructions) = match converted {
+        Ok(instructions) if context.conditions.is_empty() => (Verdict::Exact, Vec::new(), instructions),
+        Ok(instructions) => {
+            (Verdict::Condition, std::mem::take(&mut context.conditions).into_iter().collect(), instructions)
+        }
+        Err(Person(note)) => (Verdict::Person, vec![note], Emitter::new().finish()),
+    };
+    let mut reasons: Vec<String> = notes.iter().map(|note| format!("{}: {note}", verdict.as_str())).collect();
+    if let Some(file) = place.in_place {
+        reasons.push(format!("the rungs of file {file} follow here"));
+    }
+    let code = instructions.iter().map(ToString::to_string).collect();
+    let lines = docs::rung_comment(file, place.rung, rung, &original, &reasons);
+    rungs.push(RungResult {
+        file,
+        rung: place.rung,
+        original,
+        block: block.to_owned(),
+        block_rung: u32::try_from(block_rung).unwrap_or(u32::MAX),
+        code,
+        verdict,
+        notes,
+    });
+    domore::Rung { comment: Some(domore::Comment::plain(lines)), instructions }
+}
+
+fn convert(
+    context: &mut Context<'_>,
+    file: u16,
+    zone: Zone,
+    rung: &ladder::Rung,
+) -> context::Converted<Vec<domore::Instruction>> {
+    let mut e = Emitter::new();
+    if matches!(zone, Zone::Inside | Zone::Turns) {
+        let bit = control::zone_bit(context, file);
+        e.contact(&Contact::On(bit));
+    }
+    rung::series(context, &mut e, &rung.series)?;
+    Ok(e.finish())
+}
+
+/// Adds what stands around the program, and the ends of subroutines.
+fn finish(
+    context: &mut Context<'_>,
+    blocks: &mut Vec<domore::CodeBlock>,
+    initial: &[Initial],
+    rungs: &mut [RungResult],
+) {
+    let after = frame::after(context);
+    let before = frame::before(context, !initial.is_empty());
+    let shift = u32::try_from(before.len()).unwrap_or(u32::MAX);
+    for rung in rungs.iter_mut().filter(|rung| rung.block == "$Main") {
+        rung.block_rung = rung.block_rung.saturating_add(shift);
+    }
+    if let Some(main) = blocks.first_mut() {
+        main.rungs.splice(0..0, before);
+        main.rungs.extend(after);
+    }
+    if !initial.is_empty() {
+        let done = frame::initialized(context);
+        let mut block = code_block(initial::INIT_BLOCK);
+        block.rungs = initial::rungs(initial, &done);
+        blocks.push(block);
+    }
+    for block in blocks.iter_mut().filter(|block| block.kind == domore::CodeKind::Subroutine) {
+        block.rungs.push(domore::Rung::new([domore::Instruction::new("RET", [""; 0])]));
+    }
+}
+
+/// What a person has to know about the program as a whole.
+fn notes(image: &Image, context: &Context<'_>) -> Vec<Note> {
+    let mut notes = Vec::new();
+    let forced = image.data_files.iter().any(|file| file.forces.iter().any(|force| *force != ladder::Force::NONE));
+    if forced {
+        notes.push(Note::new(Mark::AsyncIo, "the project holds forces: they are not carried over"));
+    }
+    if context.needs.minor_errors {
+        let text = "overflow (S:5/0) and control register errors (S:5/2) stop the original at the end of the scan: \
+                    the last rung does the same with HALT; restart by PROGRAM and RUN";
+        notes.push(Note::new(Mark::Fault, text));
+    }
+    if image.program_file(2).is_none() {
+        notes.push(Note::new(Mark::Fault, "there is no program file 2: the original does not run"));
+    }
+    notes
 }

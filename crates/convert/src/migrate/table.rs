@@ -8,18 +8,18 @@ use super::{bits, control, counters, timers};
 
 /// One instruction.
 #[derive(Clone, Copy)]
-pub struct Row {
+pub(super) struct Row {
     /// Mnemonic of the original.
-    pub mnemonic: &'static str,
+    pub(super) mnemonic: &'static str,
     /// Appends its conversion to a rung.
-    pub convert: Convert,
+    pub(super) convert: Convert,
     /// The single contact it is, where it is one without effects on operands that are plain. Such a
     /// contact can join parallel legs.
-    pub contact: Option<fn(&mut Context<'_>, &Instruction) -> Option<Contact>>,
+    pub(super) contact: Option<fn(&mut Context<'_>, &Instruction) -> Option<Contact>>,
 }
 
 /// An output, or a condition with effects.
-pub const fn row(mnemonic: &'static str, convert: Convert) -> Row {
+pub(super) const fn row(mnemonic: &'static str, convert: Convert) -> Row {
     Row { mnemonic, convert, contact: None }
 }
 
@@ -27,6 +27,6 @@ pub const fn row(mnemonic: &'static str, convert: Convert) -> Row {
 const TABLES: &[&[Row]] = &[bits::TABLE, timers::TABLE, counters::TABLE, control::TABLE];
 
 /// The row of a mnemonic.
-pub fn by_mnemonic(mnemonic: &str) -> Option<&'static Row> {
+pub(super) fn by_mnemonic(mnemonic: &str) -> Option<&'static Row> {
     TABLES.iter().flat_map(|rows| rows.iter()).find(|row| row.mnemonic == mnemonic)
 }

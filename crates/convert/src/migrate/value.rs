@@ -70,6 +70,11 @@ impl Value {
         Value { plain: None, bind: Bind::Bits, ..Value::element(text, width) }
     }
 
+    /// A function call, or another text that needs no parentheses.
+    pub fn call(text: impl Into<String>, width: Width) -> Value {
+        Value { bind: Bind::Atom, ..Value::expression(text, width) }
+    }
+
     /// A whole number; its width in the original is the smallest that holds it.
     pub fn integer(value: i64) -> Value {
         let word = i16::try_from(value);
@@ -325,6 +330,15 @@ impl Value {
 
     /// An operation of floats: `+`, `-`, `*` or `/`.
     pub fn float_operation(&self, sign: char, other: &Value) -> Value {
+        if let (Some(a), Some(b)) = (self.constant, other.constant) {
+            let (a, b) = (a.float(), b.float());
+            return Value::real(match sign {
+                '+' => a + b,
+                '-' => a - b,
+                '*' => a * b,
+                _ => a / b,
+            });
+        }
         let left = self.beside(other);
         // One float is enough to make the operation one.
         let right = other.beside(&Value { width: Width::Float, ..left.clone() });
@@ -348,6 +362,13 @@ impl Value {
             Value { constant: Some(Number::Float(value)), .. } => Value::real(-value),
             value => float(format!("-{}", value.atom()), Bind::Sign),
         }
+    }
+}
+
+impl Value {
+    /// Its constant value as a float.
+    pub fn known_float(&self) -> Option<f32> {
+        self.constant.map(Number::float)
     }
 }
 
