@@ -132,6 +132,18 @@ fn limits_alarms_and_windup() {
     assert_eq!(b[word::FLAGS] & (flag::UPPER_ALARM | flag::LOWER_ALARM), flag::LOWER_ALARM);
 }
 
+/// Two loops of a MicroLogix 1400 saved while running: OL off, 0 and 100 in words 12 and 11, a sum far above
+/// the range, UL not set.
+#[test]
+fn an_output_at_full_scale_does_not_exceed_a_limit_of_100_percent() {
+    for (limit, alarm) in [(100, 0), (99, flag::UPPER_ALARM)] {
+        let (mut b, mut state) = (block(0, 16000, 240), Loop::default());
+        (b[word::OUTPUT_MIN], b[word::OUTPUT_MAX]) = (0, limit);
+        assert_eq!(run(&mut b, 0, &mut state), Some(FULL_SCALE));
+        assert_eq!(b[word::FLAGS] & flag::UPPER_ALARM, alarm, "{limit} %");
+    }
+}
+
 #[test]
 fn manual_mode_hands_over_without_a_bump() {
     let (mut b, mut state) = (block(flag::MANUAL, 1000, 10), Loop::default());
