@@ -32,6 +32,9 @@ const COLUMNS: [&str; 5] = [ADDRESS, SYMBOL, DESCRIPTION, KIND, MNEMONIC];
 /// The kind of a row that describes an address under one instruction.
 const INSTRUCTION_COMMENT: &str = "instruction_comment";
 
+/// Largest table that [`read_symbols`] is meant for: ten times that of the largest known program.
+pub const MAX_BYTES: usize = 8 << 20;
+
 /// Why a table cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CsvError {

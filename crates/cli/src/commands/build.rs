@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ladder::{Project, Severity};
 
-use super::open;
+use super::{open, read_file};
 use crate::args::BuildArguments;
 use crate::output::{Error, Outcome};
 
@@ -56,7 +56,9 @@ fn symbols_file(arguments: &BuildArguments) -> Option<PathBuf> {
 }
 
 fn add_symbols(project: &mut Project, path: &Path) -> Result<(), Error> {
-    let text = std::fs::read_to_string(path).map_err(|error| Error::Use(format!("{}: {error}", path.display())))?;
-    convert::csv::read_symbols(&text, &mut project.main)
-        .map_err(|error| Error::Use(format!("{}: {error}", path.display())))
+    let wrong = |why: String| Error::Use(format!("{}: {why}", path.display()));
+    let bytes = read_file(path, convert::csv::MAX_BYTES).map_err(wrong)?;
+    // Spreadsheet programs write the code page of their country or UTF-8, as it happens.
+    let text = convert::slc::decode(&bytes);
+    convert::csv::read_symbols(&text, &mut project.main).map_err(|error| wrong(error.to_string()))
 }

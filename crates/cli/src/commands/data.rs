@@ -3,9 +3,10 @@
 use std::io::Write;
 
 use ladder::{Address, DataFile, FileType, Place, TimeBase, Value, format_float};
+use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::{Opened, each_project, one_line, write_json};
+use super::{Opened, diagnostics_json, each_project, one_line};
 use crate::args::{DataArguments, Radix};
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
@@ -24,7 +25,7 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
         }
         for choice in choices(opened, &wanted) {
             match choice {
-                Choice::File(file) if arguments.input.json => json_files.push(file_json(opened, file)),
+                Choice::File(file) if arguments.input.json => json_files.push(FileRow::of(opened, file)),
                 Choice::File(file) => print_file(opened, file, arguments.radix, out)?,
                 Choice::Address(address) => {
                     let value = opened.image().value_at(&address);
@@ -54,11 +55,25 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
             }
         }
         if arguments.input.json {
-            let file = opened.path.display().to_string();
-            write_json(opened, json!({"file": file, "data_files": json_files, "values": json_values}), out)?;
+            let document = Document {
+                file: opened.path.display().to_string(),
+                data_files: json_files,
+                values: json_values,
+                diagnostics: diagnostics_json(&opened.project),
+            };
+            serde_json::to_writer(&mut *out, &document).map_err(std::io::Error::from)?;
+            writeln!(out)?;
         }
         Ok(outcome)
     })
+}
+
+#[derive(Serialize)]
+struct Document<'o> {
+    file: String,
+    data_files: Vec<FileRow<'o>>,
+    values: Vec<serde_json::Value>,
+    diagnostics: serde_json::Value,
 }
 
 enum Choice<'o> {
@@ -229,13 +244,42 @@ fn value_json(value: &Value) -> serde_json::Value {
     }
 }
 
-fn file_json(opened: &Opened, file: &DataFile) -> serde_json::Value {
-    let values = (0..file.elements).filter_map(|element| {
-        let value = value_json(&file.value(element)?);
-        Some(json!({"address": element_address(opened, file, element).to_string(), "value": value}))
-    });
-    json!({
-        "number": file.number, "type": file.file_type.to_string(), "name": file.name,
-        "description": file.description, "elements": file.elements, "values": values.collect::<serde_json::Value>(),
-    })
+/// A data file in JSON, its values made one by one while they are written.
+#[derive(Serialize)]
+struct FileRow<'o> {
+    number: u16,
+    #[serde(rename = "type")]
+    file_type: String,
+    name: &'o str,
+    description: &'o str,
+    elements: u16,
+    values: Values<'o>,
+}
+
+struct Values<'o> {
+    opened: &'o Opened,
+    file: &'o DataFile,
+}
+
+impl<'o> FileRow<'o> {
+    fn of(opened: &'o Opened, file: &'o DataFile) -> FileRow<'o> {
+        FileRow {
+            number: file.number,
+            file_type: file.file_type.to_string(),
+            name: &file.name,
+            description: &file.description,
+            elements: file.elements,
+            values: Values { opened, file },
+        }
+    }
+}
+
+impl Serialize for Values<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq((0..self.file.elements).filter_map(|element| {
+            let value = value_json(&self.file.value(element)?);
+            let address = element_address(self.opened, self.file, element).to_string();
+            Some(json!({"address": address, "value": value}))
+        }))
+    }
 }

@@ -75,20 +75,23 @@ impl Opened {
     }
 }
 
-/// Reads a file whole, up to a size no project comes near, whatever its directory entry states.
-fn read_file(path: &Path) -> Result<Vec<u8>, String> {
-    const LIMIT: u64 = 64 << 20;
+/// Bytes of a project that are read at all; what is known of its content has limits of its own.
+const MOST_BYTES: usize = 64 << 20;
+
+/// Reads a file whole, up to `limit` bytes, whatever its directory entry states.
+fn read_file(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
-    file.take(LIMIT + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > LIMIT {
-        return Err(format!("expected a project of at most {LIMIT} bytes, found more"));
+    let most = u64::try_from(limit).unwrap_or(u64::MAX).saturating_add(1);
+    file.take(most).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() > limit {
+        return Err(format!("expected a file of at most {limit} bytes, found more"));
     }
     Ok(bytes)
 }
 
 pub(crate) fn open(path: &Path, mode: Mode) -> Result<Project, String> {
-    let bytes = read_file(path)?;
+    let bytes = read_file(path, MOST_BYTES)?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     convert::open(&bytes, &name, mode).map_err(|error| error.to_string())
 }
