@@ -181,22 +181,20 @@ impl Core<'_> {
         Ok((step, Some(number as u32)))
     }
 
-    /// The entry of a file at a step.
-    fn entry(&mut self, file: Start, number: u32) -> Exec<u32> {
+    /// First word of the entry of a file at a step.
+    fn entry_at(&mut self, file: Start, number: u32) -> Exec<u32> {
         let (from, end) = self.start(file)?;
         let at = from + number * file.size;
-        if at >= end {
-            return Err(code::SEQUENCER);
-        }
+        if at < end { Ok(at) } else { Err(code::SEQUENCER) }
+    }
+
+    fn entry(&mut self, file: Start, number: u32) -> Exec<u32> {
+        let at = self.entry_at(file, number)?;
         Ok(if file.kind == Width::Word { u32::from(self.word(at)) } else { self.long(at) })
     }
 
     fn put_entry(&mut self, file: Start, number: u32, value: u32) -> Exec<()> {
-        let (from, end) = self.start(file)?;
-        let at = from + number * file.size;
-        if at >= end {
-            return Err(code::SEQUENCER);
-        }
+        let at = self.entry_at(file, number)?;
         if file.kind == Width::Word {
             self.put(at, value as u16)
         } else {
@@ -294,7 +292,7 @@ impl Core<'_> {
         }
         let (first, rest) = buffer.split_at_mut(places[0].1);
         let (second, third) = rest.split_at_mut(places[1].1);
-        let detected = diagnostic::detect(power, detect, controls, first, second, third).map_err(|_| code::SHIFT)?;
+        let detected = diagnostic::detect(power, detect, controls, first, second, third);
         let store = [(places[1].0, &*second), (places[2].0, &*third)];
         for (from, words) in store {
             if let Some(area) = self.s.mem.get_mut(from as usize..from as usize + words.len()) {
@@ -303,6 +301,7 @@ impl Core<'_> {
         }
         buffer.clear();
         self.s.scratch = buffer;
+        let detected = detected.map_err(|_| code::SHIFT)?;
         self.put_control(compare_at, detected.controls.compare);
         self.put_control(result_at, detected.controls.result);
         self.control_error(detected.control_error);
