@@ -88,7 +88,7 @@ fn faults_must_be_expected_in_the_step_they_come_in() {
     let fault = "[[step]]\nset = { \"B3:0/0\" = 1 }\nscans = 1\n";
     let report = attempt(&format!("{ladder}{fault}")).expect("it runs");
     let [failure] = report.failures.as_slice() else { panic!("one failure: {report:?}") };
-    assert!(matches!(failure.found, Found::Fault { expected: None, found: Some(fault) } if fault.code == 0x20));
+    assert!(matches!(failure.found, Found::Fault { expected: None, found: Some(ref fault) } if fault.code == 0x20));
     assert!(
         failure.to_string().starts_with("step 1, scan 1, 0.000 s: expected no major fault, found major fault 0020")
     );

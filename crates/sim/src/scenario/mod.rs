@@ -20,6 +20,7 @@
 //! processor enters run, and is written once more behind the prescan: it is the state the test starts from.
 //! So is what a later step with `mode` sets; its timers alone stay as the change of mode leaves them.
 
+mod controller;
 mod duration;
 mod literal;
 mod parse;
@@ -30,9 +31,10 @@ use std::time::Duration;
 
 use ladder::Family;
 
+pub use controller::{Controller, Stop};
 pub use duration::parse_duration;
 pub use literal::{Literal, Mismatch, matches, value_for};
-pub use run::{Failure, Found, Loader, Report, RunError, run};
+pub use run::{Failure, Foreign, Found, Loader, Report, RunError, play, run};
 
 /// A program, steps, expectations.
 #[derive(Clone, Debug, PartialEq)]

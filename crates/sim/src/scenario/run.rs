@@ -3,13 +3,12 @@
 use std::fmt;
 use std::time::Duration;
 
-use ladder::{Address, Family, FileType, Image, Place, Rung, Value};
+use ladder::{Address, Family, Image, Rung, Value};
 
+use super::controller::{Controller, Stop};
 use super::literal::{Mismatch, matches, value_for};
 use super::{Assignment, Length, Scenario, Spot, Step, Subject, Target};
-use crate::{
-    AccessError, Approximation, Choices, Machine, MajorFault, Options, Program, Refusal, inline_image, outside,
-};
+use crate::{Approximation, Choices, Machine, Options, Program, Refusal, inline_image, outside};
 
 /// Where programs come from: `sim` reads no file and no text.
 pub trait Loader {
@@ -24,6 +23,24 @@ pub trait Loader {
     /// # Errors
     /// Each place that cannot be read: its line in the text, from 1, and what is wrong.
     fn rungs(&self, text: &str, family: Family) -> Result<Vec<Rung>, Vec<(u32, String)>>;
+
+    /// A controller for a scenario that this crate has none for: another dialect. `None`: there is none
+    /// either.
+    ///
+    /// # Errors
+    /// Why the scenario cannot be played on it.
+    fn controller(&self, scenario: &Scenario) -> Result<Option<Foreign>, RunError> {
+        let _ = scenario;
+        Ok(None)
+    }
+}
+
+/// A controller of another dialect, ready to enter run.
+pub struct Foreign {
+    /// The controller, its program loaded.
+    pub controller: Box<dyn Controller>,
+    /// What of the program runs only approximately.
+    pub approximations: Vec<Approximation>,
 }
 
 /// Why a scenario could not be carried out.
@@ -98,7 +115,7 @@ pub enum Found {
         /// The code the step expects.
         expected: Option<u16>,
         /// The fault the processor stopped with.
-        found: Option<MajorFault>,
+        found: Option<Stop>,
     },
 }
 
@@ -134,20 +151,28 @@ impl fmt::Display for Failure {
 /// The program cannot be had or simulated, or an address of the scenario does not exist in it.
 /// Expectations that are not met are no error: they are in the [`Report`].
 pub fn run(scenario: &Scenario, loader: &dyn Loader, choices: Choices) -> Result<Report, RunError> {
+    if let Some(Foreign { mut controller, approximations }) = loader.controller(scenario)? {
+        return play(scenario, &mut *controller, approximations);
+    }
     let (image, mut options) = image(scenario, loader)?;
     options.choices = choices;
     options.addresses = named(scenario).map(address).collect::<Result<_, _>>()?;
     options.addresses.iter_mut().for_each(|address| address.indexed = false);
     let program = Program::compile(&image, &options).map_err(RunError::Refused)?;
     let approximations = program.approximations().to_vec();
-    let mut player = Player {
-        machine: Machine::new(program),
-        dt: scenario.scan,
-        entered: true,
-        scans: 0,
-        checks: 0,
-        failures: Vec::new(),
-    };
+    play(scenario, &mut Machine::new(program), approximations)
+}
+
+/// Plays the steps on a controller in program mode.
+///
+/// # Errors
+/// An address of the scenario does not exist there.
+pub fn play(
+    scenario: &Scenario,
+    machine: &mut dyn Controller,
+    approximations: Vec<Approximation>,
+) -> Result<Report, RunError> {
+    let mut player = Player { machine, dt: scenario.scan, entered: true, scans: 0, checks: 0, failures: Vec::new() };
     if let Some(first) = scenario.steps.first() {
         player.assign(&first.set)?;
     }
@@ -156,19 +181,19 @@ pub fn run(scenario: &Scenario, loader: &dyn Loader, choices: Choices) -> Result
         player.step(index + 1, step)?;
     }
     Ok(Report {
-        failures: player.failures,
         checks: player.checks,
         scans: player.scans,
         time: player.machine.now(),
-        approximations,
         strays: player.machine.strays(),
+        failures: player.failures,
+        approximations,
     })
 }
 
 fn image(scenario: &Scenario, loader: &dyn Loader) -> Result<(Image, Options), RunError> {
     let family = match scenario.target {
         Some(Target::DoMore) => {
-            let message = "family do-more: this version simulates SLC 500 and MicroLogix programs only";
+            let message = "family do-more: nothing here runs Do-more programs";
             return Err(at(1, message));
         }
         Some(Target::Slc(family)) => Some(family),
@@ -220,8 +245,8 @@ fn address(spot: &Spot<String>) -> Result<Address, RunError> {
 const MOST_INSTRUCTIONS: u64 = 20_000_000_000;
 
 /// A machine with what is counted while a scenario runs on it.
-struct Player {
-    machine: Machine,
+struct Player<'m> {
+    machine: &'m mut dyn Controller,
     dt: Duration,
     /// No scan since run was entered.
     entered: bool,
@@ -230,7 +255,7 @@ struct Player {
     failures: Vec<Failure>,
 }
 
-impl Player {
+impl Player<'_> {
     fn step(&mut self, number: usize, step: &Step) -> Result<(), RunError> {
         if step.program_run {
             self.machine.enter_program();
@@ -240,11 +265,14 @@ impl Player {
             self.entered = true;
         }
         // A fault on going to run belongs to the step that causes it.
-        let before = if step.program_run || number == 1 { None } else { self.machine.fault() };
+        let before = if step.program_run || number == 1 { None } else { self.machine.stopped() };
         if step.program_run {
-            // Not the timers: they enter run the way the change of mode leaves them.
-            let is_timer = |spot: &Assignment| address(&spot.address).is_ok_and(|a| a.file_type == FileType::T);
-            self.assign(step.set.iter().filter(|spot| !is_timer(spot)))?;
+            // But what enters run the way the change of mode leaves it.
+            for assignment in &step.set {
+                if !self.machine.follows_mode(&assignment.address.value) {
+                    self.assign([assignment])?;
+                }
+            }
         } else {
             self.assign(&step.set)?;
         }
@@ -281,12 +309,12 @@ impl Player {
     }
 
     /// A fault must be the one expected; one that came in this step must have been expected.
-    fn check_fault(&mut self, number: usize, step: &Step, before: Option<MajorFault>) {
-        let found = self.machine.fault();
+    fn check_fault(&mut self, number: usize, step: &Step, before: Option<Stop>) {
+        let found = self.machine.stopped();
         let expected = step.fault.as_ref().map(|spot| spot.value);
         let met = match expected {
             Some(0) => found.is_none(),
-            Some(code) => found.is_some_and(|fault| fault.code == code),
+            Some(code) => found.as_ref().is_some_and(|fault| fault.code == code),
             None => found.is_none() || found == before,
         };
         self.checks += usize::from(expected.is_some());
@@ -323,35 +351,11 @@ impl Player {
     }
 
     fn read(&self, spot: &Spot<String>) -> Result<Value, RunError> {
-        let place = self.place(spot)?;
-        self.machine.get(&place).map_err(|why| access(spot, &why))
+        self.machine.read(&spot.value).map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
     }
 
     fn write(&mut self, spot: &Spot<String>, value: &Value) -> Result<(), RunError> {
-        let place = self.place(spot)?;
-        self.machine.set(&place, value).map_err(|why| access(spot, &why))
+        let written = self.machine.write(&spot.value, value);
+        written.map_err(|why| at(spot.line, format!("{}: {why}", spot.value)))
     }
-
-    /// The address with what stands in brackets read from the data table.
-    fn place(&self, spot: &Spot<String>) -> Result<Address, RunError> {
-        let mut address = address(spot)?;
-        for place in [Some(&mut address.file), Some(&mut address.element), address.bit.as_mut()].into_iter().flatten() {
-            if let Place::Indirect(inner) = place {
-                let value = self.machine.get(inner).map_err(|why| access(spot, &why))?;
-                let number = match value {
-                    Value::Word(word) => u16::try_from(word).ok(),
-                    Value::Long(long) => u16::try_from(long).ok(),
-                    _ => None,
-                };
-                let number =
-                    number.ok_or_else(|| at(spot.line, format!("{}: [{inner}] holds no place", spot.value)))?;
-                *place = Place::Number(number);
-            }
-        }
-        Ok(address)
-    }
-}
-
-fn access(spot: &Spot<String>, why: &AccessError) -> RunError {
-    at(spot.line, format!("{}: {why}", spot.value))
 }
