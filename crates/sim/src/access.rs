@@ -89,6 +89,16 @@ impl Machine {
         })
     }
 
+    /// The first bit of what stands at an address, counted through [`Machine::data`], and what stands
+    /// there: for callers that look at the same places scan after scan.
+    ///
+    /// # Errors
+    /// There is no such place.
+    pub fn place(&self, address: &Address) -> Result<(u32, Kind), AccessError> {
+        let location = self.locate(address)?;
+        Ok((location.word * 16 + u32::from(location.bit), self.kind(address)?))
+    }
+
     fn file_type(&self, location: Location) -> FileType {
         self.program.layout.files.get(location.file).map_or(FileType::N, |file| file.file_type)
     }

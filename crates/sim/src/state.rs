@@ -120,4 +120,60 @@ impl State {
             scratch: Vec::with_capacity(if program.needs_scratch() { 3 * program.data.len() } else { 0 }),
         }
     }
+
+    /// Takes over all of another state in the memory this one has.
+    pub(crate) fn copy_from(&mut self, other: &State) {
+        // Named one by one, so that a new field cannot be forgotten.
+        let State {
+            mem,
+            inputs,
+            outputs,
+            input_forces,
+            output_forces,
+            timers,
+            pids,
+            messages,
+            adjusts,
+            now,
+            scans,
+            executed,
+            limit,
+            mode,
+            fault,
+            clock_part,
+            second_part,
+            since_scan,
+            timed,
+            due,
+            events,
+            event_inputs,
+            fast,
+            strays,
+            scratch: _,
+        } = other;
+        self.mem.clone_from(mem);
+        self.inputs.clone_from(inputs);
+        self.outputs.clone_from(outputs);
+        self.input_forces.clone_from(input_forces);
+        self.output_forces.clone_from(output_forces);
+        self.timers.clone_from(timers);
+        self.pids.clone_from(pids);
+        self.messages.clone_from(messages);
+        self.adjusts.clone_from(adjusts);
+        self.now = *now;
+        self.scans = *scans;
+        self.executed = *executed;
+        self.limit = *limit;
+        self.mode = *mode;
+        self.fault = *fault;
+        self.clock_part = *clock_part;
+        self.second_part = *second_part;
+        self.since_scan = *since_scan;
+        self.timed = *timed;
+        self.due = *due;
+        self.events = *events;
+        self.event_inputs = *event_inputs;
+        self.fast = *fast;
+        self.strays = *strays;
+    }
 }

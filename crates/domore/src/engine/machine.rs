@@ -335,6 +335,11 @@ impl Machine {
         }
     }
 
+    /// All memory: what [`crate::memory::Map`] of [`Program::memory`] places.
+    pub fn data(&self) -> &crate::memory::Data {
+        &self.state.data
+    }
+
     /// A second machine in the same state.
     pub fn fork(&self) -> Machine {
         Machine { program: Arc::clone(&self.program), state: self.state.clone() }
