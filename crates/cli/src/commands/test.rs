@@ -106,7 +106,8 @@ impl Sum {
 
 fn attempt(path: &Path, arguments: &TestArguments) -> Tried {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let text = read_file(path, super::MOST_BYTES).and_then(|bytes| String::from_utf8(bytes).map_err(|_| "not UTF-8 text".to_owned()));
+    let text = read_file(path, super::MOST_BYTES)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "not UTF-8 text".to_owned()));
     let scenario = text.and_then(|text| Scenario::parse(&text).map_err(|error| error.to_string()));
     let scenario = match scenario {
         Ok(scenario) => scenario,
