@@ -5,13 +5,13 @@ use std::io::Write;
 use convert::verify::{CodeCheck, CodeDifference, check_code};
 use serde_json::{Value, json};
 
-use super::{each_file, mode, read_file};
+use super::{MOST_BYTES, each_file, mode, read_file};
 use crate::args::VerifyArguments;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
     each_file(&arguments.files, arguments.json, |path, _, out| {
-        let read = read_file(path)
+        let read = read_file(path, MOST_BYTES)
             .and_then(|bytes| rss::Project::read(&bytes, mode(arguments.strict)).map_err(|error| error.to_string()));
         let project = match read {
             Ok(project) => project,
