@@ -1,4 +1,4 @@
-//! Between project files, the program model, SLC text, JSON and CSV.
+//! Between project files, the program model, SLC text, Do-more text, JSON and CSV.
 //!
 //! [`open()`] reads a project of any form. The joints between byte records and the model are here
 //! and nowhere else: `rss` knows no instruction, `ladder` no byte.
@@ -6,6 +6,7 @@
 pub mod code;
 mod codes;
 pub mod csv;
+pub mod designer;
 pub mod from_rss;
 pub mod json;
 mod limits;
@@ -18,4 +19,4 @@ pub mod to_rss;
 pub mod verify;
 
 pub use limits::{MAX_DATA_WORDS, MAX_PARTS};
-pub use open::{MAX_JSON, MAX_SLC_TEXT, OpenError, open};
+pub use open::{AnyProject, MAX_JSON, MAX_SLC_TEXT, OpenError, open, open_any};

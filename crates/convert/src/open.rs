@@ -6,6 +6,8 @@ use ladder::{Project, Source};
 use rss::Mode;
 use sha2::{Digest, Sha256};
 
+use crate::designer::Document;
+
 /// Why a file is no project.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -16,6 +18,12 @@ pub enum OpenError {
     Text(crate::slc::FileError),
     /// A JSON document that is no project.
     Json(crate::json::JsonError),
+    /// A text for Do-more Designer where only a project of RSLogix 500 will do.
+    OtherDialect,
+    /// A text for Do-more Designer that cannot be read.
+    Domore(domore::text::Error),
+    /// A text for Do-more Designer with a deviation, read strictly.
+    Strict(domore::Diagnostic),
 }
 
 impl fmt::Display for OpenError {
@@ -24,6 +32,9 @@ impl fmt::Display for OpenError {
             OpenError::File(error) => error.fmt(f),
             OpenError::Text(error) => error.fmt(f),
             OpenError::Json(error) => error.fmt(f),
+            OpenError::OtherDialect => f.write_str("expected a project of RSLogix 500, found one of Do-more Designer"),
+            OpenError::Domore(error) => error.fmt(f),
+            OpenError::Strict(found) => write!(f, "strict reading: {found}"),
         }
     }
 }
@@ -43,12 +54,7 @@ pub const MAX_JSON: usize = rss::container::MAX_FILE;
 /// # Errors
 /// What the file is instead, or where it is damaged. In [`Mode::Strict`] the first deviation.
 pub fn open(bytes: &[u8], file_name: &str, mode: Mode) -> Result<Project, OpenError> {
-    let source = Source {
-        file: file_name.to_owned(),
-        sha256: hex(&Sha256::digest(bytes)),
-        bytes: u64::try_from(bytes.len()).unwrap_or(u64::MAX),
-        ..Source::default()
-    };
+    let source = source(bytes, file_name);
     match rss::Project::read(bytes, mode) {
         Ok(file) => strict(crate::from_rss::project(&file, source), mode),
         Err(rss::Error::Foreign(rss::Foreign::SlcText)) => {
@@ -61,8 +67,44 @@ pub fn open(bytes: &[u8], file_name: &str, mode: Mode) -> Result<Project, OpenEr
                 within(bytes, MAX_JSON, "a JSON project")?;
                 crate::json::from_json(text).map_err(OpenError::Json)
             }
+            None if crate::designer::is_designer(bytes) => Err(OpenError::OtherDialect),
             None => Err(OpenError::File(error)),
         },
+    }
+}
+
+/// A project of any dialect.
+#[derive(Clone, Debug)]
+pub enum AnyProject {
+    /// SLC 500 or MicroLogix.
+    Rslogix(Box<Project>),
+    /// Do-more.
+    Domore(Box<Document>),
+}
+
+/// As [`open()`], and texts for Do-more Designer besides.
+///
+/// # Errors
+/// As [`open()`].
+pub fn open_any(bytes: &[u8], file_name: &str, mode: Mode) -> Result<AnyProject, OpenError> {
+    match open(bytes, file_name, mode) {
+        Err(OpenError::OtherDialect) => {}
+        result => return result.map(|project| AnyProject::Rslogix(Box::new(project))),
+    }
+    let document = crate::designer::from_bytes(bytes, source(bytes, file_name)).map_err(OpenError::Domore)?;
+    let worst = document.diagnostics.iter().find(|found| found.problem.severity() >= ladder::Severity::Warning);
+    match worst {
+        Some(found) if mode == Mode::Strict => Err(OpenError::Strict(found.clone())),
+        _ => Ok(AnyProject::Domore(Box::new(document))),
+    }
+}
+
+fn source(bytes: &[u8], file_name: &str) -> Source {
+    Source {
+        file: file_name.to_owned(),
+        sha256: hex(&Sha256::digest(bytes)),
+        bytes: u64::try_from(bytes.len()).unwrap_or(u64::MAX),
+        ..Source::default()
     }
 }
 
