@@ -319,19 +319,44 @@ pub struct TestArguments {
 pub struct Simulation {
     /// Take the other reading of an open question, see docs/semantics-choices.md
     #[arg(long = "choice", value_name = "NAME", value_parser = choice)]
-    pub choices: Vec<Choice>,
+    pub choices: Vec<AnyChoice>,
+}
+
+/// The other reading of an open question, of either dialect.
+#[derive(Clone, Copy)]
+pub enum AnyChoice {
+    /// Of SLC 500 and MicroLogix.
+    Slc(Choice),
+    /// Of Do-more.
+    DoMore(domore::choices::Choice),
 }
 
 impl Simulation {
-    /// All answers together.
+    /// All answers about SLC 500 and MicroLogix together.
     pub fn choices(&self) -> Choices {
-        self.choices.iter().fold(Choices::default(), |all, choice| all.with(*choice))
+        self.choices.iter().fold(Choices::default(), |all, choice| match choice {
+            AnyChoice::Slc(choice) => all.with(*choice),
+            AnyChoice::DoMore(_) => all,
+        })
+    }
+
+    /// All answers about Do-more together.
+    pub fn do_more(&self) -> domore::choices::Choices {
+        self.choices.iter().fold(Default::default(), |all: domore::choices::Choices, choice| match choice {
+            AnyChoice::DoMore(choice) => all.with(*choice),
+            AnyChoice::Slc(_) => all,
+        })
     }
 }
 
-fn choice(name: &str) -> Result<Choice, String> {
-    let names = || sim::choices::LIST.iter().map(|row| row.name).collect::<Vec<_>>().join(", ");
-    Choices::by_name(name).ok_or_else(|| format!("expected one of {}", names()))
+fn choice(name: &str) -> Result<AnyChoice, String> {
+    let do_more = domore::choices::LIST.iter().find(|row| row.name == name).map(|row| AnyChoice::DoMore(row.choice));
+    let slc = Choices::by_name(name).map(AnyChoice::Slc);
+    slc.or(do_more).ok_or_else(|| {
+        let names = sim::choices::LIST.iter().map(|row| row.name);
+        let names: Vec<_> = names.chain(domore::choices::LIST.iter().map(|row| row.name)).collect();
+        format!("expected one of {}", names.join(", "))
+    })
 }
 
 /// Rung numbers, both ends included.

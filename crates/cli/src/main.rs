@@ -5,6 +5,7 @@
 
 mod args;
 mod commands;
+mod do_more;
 mod files;
 mod output;
 mod scenario_loader;

@@ -596,10 +596,10 @@ fn cast_place(block: &Block, place: Place, cast: Cast) -> Result<Place, String> 
         return Err(format!("an element of {width} bits has no part :{cast}"));
     }
     let bit = place.bit + offset;
-    if kind != Kind::Bit && bit % 8 != 0 {
+    if kind != Kind::Bit && !bit.is_multiple_of(8) {
         return Err(format!("bits are read as :{cast} from a multiple of 8 only"));
     }
-    if width == 1 && kind != Kind::Bit && (bit - block.start) % taken != 0 {
+    if width == 1 && kind != Kind::Bit && !(bit - block.start).is_multiple_of(taken) {
         return Err(format!("bits are read as :{cast} from a multiple of {taken} only"));
     }
     if bit + taken > block.start + block.count * width {

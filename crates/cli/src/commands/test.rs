@@ -114,7 +114,11 @@ fn attempt(path: &Path, arguments: &TestArguments) -> Tried {
         Err(why) => return Tried { name: stem, source: Vec::new(), result: Err(Stopped::Unreadable(why)) },
     };
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let result = run_scenario(&scenario, &FolderLoader { folder }, arguments.simulation.choices());
+    let result = run_scenario(
+        &scenario,
+        &FolderLoader { folder, do_more: arguments.simulation.do_more() },
+        arguments.simulation.choices(),
+    );
     let result = result.map_err(|error| match &error {
         RunError::Scenario(_) => Stopped::Unreadable(error.to_string()),
         RunError::Refused(_) => Stopped::Refused(error.to_string()),
@@ -207,7 +211,7 @@ fn failure(failure: &Failure) -> Value {
         Found::Fault { expected, found } => (
             json!("fault"),
             json!(expected.map(|code| format!("{code:04X}"))),
-            json!(found.map(|fault| fault.to_string())),
+            json!(found.as_ref().map(ToString::to_string)),
         ),
     };
     json!({

@@ -109,6 +109,13 @@ impl Reader<'_> {
     fn scenario(&self, table: &DeTable<'_>) -> Result<Scenario> {
         self.known(table, "", TOP)?;
         let target = table.get("family").map(|value| self.target(value)).transpose()?;
+        // What a text file is shows when it is opened; its addresses are read then.
+        let addresses = match table.get("program").map(|value| value.get_ref()) {
+            Some(DeValue::String(path)) if target.is_none() && path.to_ascii_lowercase().ends_with(".txt") => {
+                Some(Target::DoMore)
+            }
+            _ => target,
+        };
         let scan = table.get("scan").map(|value| self.duration(value, "scan")).transpose()?.unwrap_or(SCAN);
         if scan.is_zero() {
             return Err(ScenarioError { line: 1, key: "scan".into(), message: "expected a time above 0".into() });
@@ -117,7 +124,7 @@ impl Reader<'_> {
             None => Vec::new(),
             Some(value) => match value.get_ref() {
                 DeValue::Array(steps) => {
-                    let number = |(index, step)| self.step(step, index + 1, target, scan);
+                    let number = |(index, step)| self.step(step, index + 1, addresses, scan);
                     steps.iter().enumerate().map(number).collect::<Result<_>>()?
                 }
                 _ => return Err(self.expected(value, "step", "steps, each below a line [[step]]")),

@@ -1,0 +1,128 @@
+//! Do-more programs for scenarios and runs: text to a machine, and the machine as the runner of scenarios
+//! drives it.
+
+use std::time::Duration;
+
+use domore::engine::{Machine, Options, Program, Value};
+use domore::memory::Kind;
+use domore::program::CodeKind;
+use ladder::Severity;
+use sim::scenario::{Controller, Foreign, Routine, RunError, Spot, Stop};
+use sim::{Approximation, Refusal};
+
+/// A Do-more machine as scenarios see it.
+pub struct DoMore(pub Machine);
+
+impl Controller for DoMore {
+    fn enter_program(&mut self) {
+        self.0.enter_program();
+    }
+
+    fn enter_run(&mut self) {
+        self.0.enter_run();
+    }
+
+    fn scan(&mut self, dt: Duration) {
+        self.0.scan(dt);
+    }
+
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn instructions(&self) -> u64 {
+        self.0.instructions()
+    }
+
+    fn stopped(&self) -> Option<Stop> {
+        self.0.fault().map(|fault| Stop { code: 0, text: fault.to_string() })
+    }
+
+    fn read(&self, address: &str) -> Result<ladder::Value, String> {
+        let handle = self.0.handle(address).map_err(|error| error.why)?;
+        Ok(match (self.0.value(handle), handle.kind()) {
+            (Value::Bit(on), _) => ladder::Value::Bit(on),
+            (Value::Integer(number), Kind::I16) => ladder::Value::Word(number as i16),
+            // Unsigned words and bytes count from 0: they are shown and compared as whole numbers.
+            (Value::Integer(number), _) => ladder::Value::Long(number as i32),
+            (Value::Real(number), _) => ladder::Value::Float(number),
+            (Value::Text(text), _) => ladder::Value::Text(text),
+        })
+    }
+
+    fn write(&mut self, address: &str, value: &ladder::Value) -> Result<(), String> {
+        let value = match value {
+            ladder::Value::Bit(on) => Value::Bit(*on),
+            ladder::Value::Word(word) => Value::Integer((*word).into()),
+            ladder::Value::Long(long) => Value::Integer((*long).into()),
+            ladder::Value::Float(number) => Value::Real(*number),
+            ladder::Value::Text(text) => Value::Text(text.clone()),
+            _ => return Err("no such value in Do-more".to_owned()),
+        };
+        self.0.set(address, &value).map_err(|error| error.why)
+    }
+}
+
+/// A machine for the text of a program file.
+///
+/// # Errors
+/// What keeps the text from being read whole, or the program from running.
+pub fn from_file(text: &str, line: u32, options: &Options) -> Result<Foreign, RunError> {
+    let reading = domore::text::read(text).map_err(|error| at(line, error.to_string()))?;
+    match reading.diagnostics.iter().find(|diagnostic| diagnostic.problem.severity() == Severity::Error) {
+        // A test on half a program would prove nothing.
+        Some(worst) => Err(at(line, format!("not all of it could be read: {worst}"))),
+        None => machine(&reading.project, options),
+    }
+}
+
+/// A machine for a ladder inside a scenario: bodies of code blocks by their heads.
+///
+/// # Errors
+/// The first place of the scenario that does not read, or what keeps the program from running.
+pub fn from_routines(routines: &[Routine], options: &Options) -> Result<Foreign, RunError> {
+    let mut text = String::new();
+    // Lines of the text so far, with the routine that begins behind each.
+    let mut starts = Vec::new();
+    for routine in routines {
+        let head = routine.name.value.trim();
+        let (word, name) = head.split_once(char::is_whitespace).unwrap_or(("$PRGRM", head));
+        let kind = CodeKind::from_begin(word).filter(|kind| !matches!(kind, CodeKind::Other { .. }));
+        let Some(kind) = kind else {
+            let heads = "$Main, or $PRGRM, $LGCMOD, $TSK or $INT with a name";
+            return Err(at(
+                routine.name.line,
+                format!("ladder.\"{head}\": expected the head of a code block: {heads}"),
+            ));
+        };
+        let name = name.trim();
+        text.push_str(&format!("{} {name}\n\n", kind.begin()));
+        starts.push((text.lines().count() as u32, routine.line));
+        text.push_str(&routine.text);
+        text.push_str(&format!("\n\n{} {name}\n\n", kind.end()));
+    }
+    let line_of = |line: u32| {
+        let start = starts.iter().rev().find(|start| start.0 < line);
+        start.map_or(1, |(before, first)| first + (line - before).saturating_sub(1))
+    };
+    let first = starts.first().map_or(1, |start| start.1);
+    let reading = domore::text::read(&text).map_err(|error| at(first, error.to_string()))?;
+    match reading.diagnostics.iter().find(|diagnostic| diagnostic.problem.severity() == Severity::Error) {
+        Some(worst) => Err(at(line_of(worst.line), format!("ladder: {}", worst.problem))),
+        None => machine(&reading.project, options),
+    }
+}
+
+fn machine(project: &domore::Project, options: &Options) -> Result<Foreign, RunError> {
+    let program = Program::compile(project, options).map_err(|refusals| {
+        let refusals = refusals.iter().map(|refusal| Refusal { site: None, why: refusal.to_string() });
+        RunError::Refused(refusals.collect())
+    })?;
+    let named = program.approximations().iter();
+    let approximations = named.map(|found| Approximation { site: None, why: found.why.clone() }).collect();
+    Ok(Foreign { controller: Box::new(DoMore(Machine::new(program))), approximations })
+}
+
+fn at(line: u32, message: String) -> RunError {
+    RunError::Scenario(Spot { value: message, line })
+}
