@@ -32,9 +32,19 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// The parts of the element an instruction names.
+    /// The parts of the element an instruction names first.
     pub(super) fn of(context: &Context<'_>, instruction: &Instruction, file_type: FileType) -> Converted<Parts> {
-        let address = address(instruction, 0)?;
+        Parts::at(context, instruction, 0, file_type)
+    }
+
+    /// The parts of the element that operand `index` names.
+    pub(super) fn at(
+        context: &Context<'_>,
+        instruction: &Instruction,
+        index: usize,
+        file_type: FileType,
+    ) -> Converted<Parts> {
+        let address = address(instruction, index)?;
         if address.file_type != file_type || address.bit.is_some() || address.word.is_some() {
             let wanted = file_type.description();
             return Err(Person::new(Mark::Operand, format!("{address} stands where a {wanted} belongs")));
@@ -63,6 +73,11 @@ impl Parts {
     /// The third word: ACC or POS.
     pub(super) fn accumulated(&self, context: &Context<'_>) -> Converted<String> {
         context.places.word(self.file_type, self.file, self.word + 2).ok_or_else(lost)
+    }
+
+    /// How many timer instructions work on the element.
+    pub(super) fn instructions(&self, context: &Context<'_>) -> usize {
+        context.facts.timer_instructions(self.file, u16::try_from(self.word / 3).unwrap_or(u16::MAX))
     }
 
     /// The element as the original spells it.

@@ -14,23 +14,32 @@
 
 pub mod allocate;
 mod bits;
+mod compare;
+mod compute;
 pub mod context;
 mod control;
 mod counters;
 pub mod docs;
 pub mod emit;
 pub mod facts;
+mod files;
 mod frame;
 pub mod initial;
 pub mod map_file;
 pub mod marks;
+mod math;
+mod moves;
 pub mod operand;
 mod plan;
 mod project;
 mod rung;
+mod scale;
+mod sequencer;
 mod status;
+mod store;
 mod table;
 mod timers;
+mod value;
 
 use ladder::Image;
 

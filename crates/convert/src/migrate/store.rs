@@ -16,7 +16,7 @@ use super::value::{Value, choose, limited, limits, relation, wrapped};
 
 /// What happens to an integer that does not fit: S:2/14.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Wrap {
+pub(super) enum Wrap {
     /// It is limited.
     Never,
     /// It keeps its low bits.
@@ -27,7 +27,7 @@ pub enum Wrap {
 
 /// How the carry flag comes out.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Carry {
+pub(super) enum Carry {
     /// Reset.
     Off,
     /// 1 or 0 as this expression says; read before the result is stored.
@@ -67,12 +67,12 @@ impl Context<'_> {
 }
 
 /// The destination operand of MATH: a blank would end it.
-pub fn destination(target: &Target) -> String {
+pub(super) fn destination(target: &Target) -> String {
     target.text.replace(' ', "")
 }
 
 /// Moves a value of the destination's own kind there.
-pub fn put(e: &mut Emitter, value: &Value, target: &Target) {
+pub(super) fn put(e: &mut Emitter, value: &Value, target: &Target) {
     match value.plain() {
         Some(plain) if target.plain => e.mov(plain, &target.text),
         _ => e.math(&destination(target), value.text()),
@@ -80,7 +80,7 @@ pub fn put(e: &mut Emitter, value: &Value, target: &Target) {
 }
 
 /// The value as an operand of contacts and boxes: through the D word `scratch` unless it is one.
-pub fn settled(e: &mut Emitter, value: &Value, scratch: &str) -> Value {
+pub(super) fn settled(e: &mut Emitter, value: &Value, scratch: &str) -> Value {
     if value.plain().is_some() {
         return value.clone();
     }
@@ -89,13 +89,13 @@ pub fn settled(e: &mut Emitter, value: &Value, scratch: &str) -> Value {
 }
 
 /// Stores an integer result whose value 32 bits hold.
-pub fn integer(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, carry: &Carry, target: &Target) {
+pub(super) fn integer(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, carry: &Carry, target: &Target) {
     let wrap = cx.wrap();
     integer_as(cx, e, result, carry, target, &wrap);
 }
 
 /// As [`integer`], with S:2/14 as given: some instructions ignore it.
-pub fn integer_as(
+pub(super) fn integer_as(
     cx: &mut Context<'_>,
     e: &mut Emitter,
     result: &Value,
@@ -154,7 +154,7 @@ pub fn integer_as(
 }
 
 /// Sets the overflow trap while the two operands differ.
-pub fn trap_unless_equal(cx: &mut Context<'_>, e: &mut Emitter, whole: &str, kept: &str) {
+pub(super) fn trap_unless_equal(cx: &mut Context<'_>, e: &mut Emitter, whole: &str, kept: &str) {
     let trap = cx.minor_error_bit(0);
     e.when(|e| {
         e.and_compare(Relation::NotEqual, whole, kept);
@@ -177,7 +177,7 @@ fn store_flags(cx: &mut Context<'_>, e: &mut Emitter, carry: &Carry, overflow: &
 }
 
 /// S:0 after an instruction whose flags are known in advance.
-pub fn fixed_flags(cx: &mut Context<'_>, e: &mut Emitter, bits: u16) {
+pub(super) fn fixed_flags(cx: &mut Context<'_>, e: &mut Emitter, bits: u16) {
     if cx.facts.names_status(0) {
         let word = cx.status_word(0);
         e.math(&word, &format!("({word} & (-16)) + {bits}"));
@@ -185,7 +185,7 @@ pub fn fixed_flags(cx: &mut Context<'_>, e: &mut Emitter, bits: u16) {
 }
 
 /// The math register gets the halves of a 32-bit value, where the program looks at it.
-pub fn register_long(cx: &mut Context<'_>, e: &mut Emitter, product: &Value) {
+pub(super) fn register_long(cx: &mut Context<'_>, e: &mut Emitter, product: &Value) {
     let low = product.bit_and(&Value::integer(65_535));
     let high = format!("({} - {}) / 65536", product.atom(), low.atom());
     let high = Value::expression(high, Width::Word);
@@ -193,7 +193,7 @@ pub fn register_long(cx: &mut Context<'_>, e: &mut Emitter, product: &Value) {
 }
 
 /// The math register gets two words, where the program looks at it.
-pub fn register(cx: &mut Context<'_>, e: &mut Emitter, low: &Value, high: &Value) {
+pub(super) fn register(cx: &mut Context<'_>, e: &mut Emitter, low: &Value, high: &Value) {
     for (word, value) in [(13, low), (14, high)] {
         if cx.facts.names_status(word) {
             let text = cx.status_word(word);
@@ -203,12 +203,12 @@ pub fn register(cx: &mut Context<'_>, e: &mut Emitter, low: &Value, high: &Value
 }
 
 /// The program looks at S:13 or S:14.
-pub fn has_register(cx: &Context<'_>) -> bool {
+pub(super) fn has_register(cx: &Context<'_>) -> bool {
     cx.facts.names_status(13) || cx.facts.names_status(14)
 }
 
 /// Stores a float result; into an integer it is rounded, halves to the even one, and limited.
-pub fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, target: &Target) {
+pub(super) fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, target: &Target) {
     if let Some(Number::Float(value)) = result.constant
         && target.width != Width::Float
     {
@@ -262,8 +262,7 @@ pub fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, target: &Tar
             let top = Value::integer(i64::from(i32::MAX));
             put(e, &choose(&format!("{source} > 2147483520.0"), &top, &whole), target);
             if cx.facts.names_status(0) {
-                let overflow =
-                    format!("IF({source} > 2147483520.0, 2, 0) + IF({source} < -2147483648.0, 2, 0)");
+                let overflow = format!("IF({source} > 2147483520.0, 2, 0) + IF({source} < -2147483648.0, 2, 0)");
                 store_flags(cx, e, &Carry::Off, &overflow, whole.text());
             }
         }
@@ -272,7 +271,7 @@ pub fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, target: &Tar
 }
 
 /// What every conversion of float arithmetic assumes.
-pub const FLOAT: &str = "floats are ordinary numbers of single precision: infinity, not-a-number and results beyond \
+pub(super) const FLOAT: &str = "floats are ordinary numbers of single precision: infinity, not-a-number and results beyond \
                          3.4E38, which stop the original with fault 0020, are not reproduced";
 
 /// The float as a plain operand.
@@ -306,7 +305,7 @@ fn float_flags(cx: &mut Context<'_>, e: &mut Emitter, kept: &str) {
 
 /// Stores a sum or difference of which one operand or the destination is a long word: what leaves 32
 /// bits is limited (or cut).
-pub fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, minus: bool, target: &Target) {
+pub(super) fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, minus: bool, target: &Target) {
     let sum = if minus { a.minus(b) } else { a.plus(b) };
     let wrap = cx.wrap();
     let carry = carry_of(a, b, minus, Width::Long);
@@ -319,7 +318,11 @@ pub fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, min
     let zero = Value::integer(0);
     let positive = if b.low >= 0 { b.clone() } else { choose(&relation(b, ">", &zero), b, &zero) };
     let negative = if b.high <= 0 { b.clone() } else { choose(&relation(b, "<", &zero), b, &zero) };
-    let (over, under) = if minus { (top.plus(&negative), bottom.plus(&positive)) } else { (top.minus(&positive), bottom.minus(&negative)) };
+    let (over, under) = if minus {
+        (top.plus(&negative), bottom.plus(&positive))
+    } else {
+        (top.minus(&positive), bottom.minus(&negative))
+    };
     let mut test = Value::integer(0);
     if sum.low < low {
         test = choose(&relation(a, "<", &under), &Value::integer(-1), &test);
@@ -360,7 +363,7 @@ pub fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, min
 }
 
 /// Carry of A + B, or borrow of A - B, as of unsigned numbers of the destination's width.
-pub fn carry_of(a: &Value, b: &Value, minus: bool, width: Width) -> Carry {
+pub(super) fn carry_of(a: &Value, b: &Value, minus: bool, width: Width) -> Carry {
     if width != Width::Word {
         return Carry::Off;
     }
@@ -373,21 +376,8 @@ pub fn carry_of(a: &Value, b: &Value, minus: bool, width: Width) -> Carry {
     })
 }
 
-/// Two constants are an expression without anything to run.
-pub fn both_known(a: &Value, b: &Value) -> bool {
-    a.constant.is_some() && b.constant.is_some()
-}
-
-/// A limit of the destination, as division by zero leaves it.
-pub fn top_of(width: Width) -> Value {
-    match width {
-        Width::Float => Value::real(f32::MAX),
-        width => Value::integer(limits(width).1),
-    }
-}
-
 /// The rounding of DIV on two known integers.
-pub fn known_quotient(cx: &Context<'_>, a: i64, b: i64) -> Option<i64> {
+pub(super) fn known_quotient(cx: &Context<'_>, a: i64, b: i64) -> Option<i64> {
     let number = |value: i64| i32::try_from(value).ok().map(Number::Long);
     let outcome = math::div(number(a)?, number(b)?, Width::Long, cx.rules.math(0));
     (b != 0).then_some(()).and(outcome.value).and_then(Number::integer)

@@ -4,7 +4,7 @@ use ladder::Instruction;
 
 use super::context::{Context, Convert};
 use super::emit::Contact;
-use super::{bits, control, counters, timers};
+use super::{bits, compare, control, counters, files, math, moves, sequencer, timers};
 
 /// One instruction.
 #[derive(Clone, Copy)]
@@ -24,7 +24,17 @@ pub(super) const fn row(mnemonic: &'static str, convert: Convert) -> Row {
 }
 
 /// All rows by family.
-const TABLES: &[&[Row]] = &[bits::TABLE, timers::TABLE, counters::TABLE, control::TABLE];
+const TABLES: &[&[Row]] = &[
+    bits::TABLE,
+    timers::TABLE,
+    counters::TABLE,
+    compare::TABLE,
+    math::TABLE,
+    moves::TABLE,
+    files::TABLE,
+    sequencer::TABLE,
+    control::TABLE,
+];
 
 /// The row of a mnemonic.
 pub(super) fn by_mnemonic(mnemonic: &str) -> Option<&'static Row> {

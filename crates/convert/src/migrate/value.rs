@@ -23,23 +23,23 @@ enum Bind {
 
 /// A value of the original as text of an expression.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Value {
+pub(super) struct Value {
     text: String,
     bind: Bind,
     /// The operand, where the value is one by itself, outside expressions too.
     plain: Option<String>,
     /// What it is in the original.
-    pub width: Width,
+    pub(super) width: Width,
     /// Lowest value, for integers.
-    pub low: i64,
+    pub(super) low: i64,
     /// Highest value, for integers.
-    pub high: i64,
+    pub(super) high: i64,
     /// Known before the program runs.
-    pub constant: Option<Number>,
+    pub(super) constant: Option<Number>,
 }
 
 /// The limits of an integer width.
-pub fn limits(width: Width) -> (i64, i64) {
+pub(super) fn limits(width: Width) -> (i64, i64) {
     match width {
         Width::Word => (i64::from(i16::MIN), i64::from(i16::MAX)),
         Width::Long | Width::Float => (i64::from(i32::MIN), i64::from(i32::MAX)),
@@ -47,36 +47,36 @@ pub fn limits(width: Width) -> (i64, i64) {
 }
 
 /// A number of single precision as an expression and Designer's editor take it: without exponent.
-pub fn real_text(value: f32) -> String {
+pub(super) fn real_text(value: f32) -> String {
     let text = value.to_string();
     if text.contains('.') { text } else { format!("{text}.0") }
 }
 
 impl Value {
     /// An element that is an operand by itself: `N7`, `R20`, `T0.Acc`.
-    pub fn element(text: impl Into<String>, width: Width) -> Value {
+    pub(super) fn element(text: impl Into<String>, width: Width) -> Value {
         let (low, high) = limits(width);
         let text = text.into();
         Value { plain: Some(text.clone()), text, bind: Bind::Atom, width, low, high, constant: None }
     }
 
     /// An element that only expressions can name: `N[N7 + 100]`.
-    pub fn indexed(text: impl Into<String>, width: Width) -> Value {
+    pub(super) fn indexed(text: impl Into<String>, width: Width) -> Value {
         Value { plain: None, ..Value::element(text, width) }
     }
 
     /// A text of an expression about which nothing but its width is known.
-    pub fn expression(text: impl Into<String>, width: Width) -> Value {
+    pub(super) fn expression(text: impl Into<String>, width: Width) -> Value {
         Value { plain: None, bind: Bind::Bits, ..Value::element(text, width) }
     }
 
     /// A function call, or another text that needs no parentheses.
-    pub fn call(text: impl Into<String>, width: Width) -> Value {
+    pub(super) fn call(text: impl Into<String>, width: Width) -> Value {
         Value { bind: Bind::Atom, ..Value::expression(text, width) }
     }
 
     /// A whole number; its width in the original is the smallest that holds it.
-    pub fn integer(value: i64) -> Value {
+    pub(super) fn integer(value: i64) -> Value {
         let word = i16::try_from(value);
         let width = if word.is_ok() { Width::Word } else { Width::Long };
         let number = match word {
@@ -94,7 +94,7 @@ impl Value {
     }
 
     /// A float constant.
-    pub fn real(value: f32) -> Value {
+    pub(super) fn real(value: f32) -> Value {
         let bind = if value.is_sign_negative() { Bind::Sign } else { Bind::Atom };
         let constant = Some(Number::Float(value));
         let text = real_text(value);
@@ -102,7 +102,7 @@ impl Value {
     }
 
     /// A constant of any kind.
-    pub fn number(value: Number) -> Value {
+    pub(super) fn number(value: Number) -> Value {
         match value {
             Number::Word(value) => Value::integer(value.into()),
             Number::Long(value) => Value::integer(value.into()),
@@ -111,39 +111,39 @@ impl Value {
     }
 
     /// The text of the expression.
-    pub fn text(&self) -> &str {
+    pub(super) fn text(&self) -> &str {
         &self.text
     }
 
     /// The operand, where the value is one by itself.
-    pub fn plain(&self) -> Option<&str> {
+    pub(super) fn plain(&self) -> Option<&str> {
         self.plain.as_deref()
     }
 
     /// It is a float.
-    pub fn is_float(&self) -> bool {
+    pub(super) fn is_float(&self) -> bool {
         self.width == Width::Float
     }
 
     /// Its constant value as an integer.
-    pub fn known(&self) -> Option<i64> {
+    pub(super) fn known(&self) -> Option<i64> {
         self.constant.and_then(Number::integer)
     }
 
     /// Every value it can have lies between the two.
-    pub fn within(&self, low: i64, high: i64) -> bool {
+    pub(super) fn within(&self, low: i64, high: i64) -> bool {
         !self.is_float() && self.low >= low && self.high <= high
     }
 
     /// It fits the destination of an integer width.
-    pub fn fits(&self, width: Width) -> bool {
+    pub(super) fn fits(&self, width: Width) -> bool {
         let (low, high) = limits(width);
         self.within(low, high)
     }
 
     /// The same value with narrower bounds.
     #[must_use]
-    pub fn bounded(mut self, low: i64, high: i64) -> Value {
+    pub(super) fn bounded(mut self, low: i64, high: i64) -> Value {
         (self.low, self.high) = (low, high);
         self
     }
@@ -158,7 +158,7 @@ impl Value {
     }
 
     /// The text where only a name, a number or a call may stand without parentheses.
-    pub fn atom(&self) -> String {
+    pub(super) fn atom(&self) -> String {
         self.tight(Bind::Atom)
     }
 
@@ -168,7 +168,7 @@ impl Value {
     }
 
     /// `self + other`.
-    pub fn plus(&self, other: &Value) -> Value {
+    pub(super) fn plus(&self, other: &Value) -> Value {
         let bounds = (self.low.saturating_add(other.low), self.high.saturating_add(other.high));
         match (self.known(), other.known()) {
             (Some(a), Some(b)) => return Value::integer(a.saturating_add(b)),
@@ -184,7 +184,7 @@ impl Value {
     }
 
     /// `self - other`.
-    pub fn minus(&self, other: &Value) -> Value {
+    pub(super) fn minus(&self, other: &Value) -> Value {
         let bounds = (self.low.saturating_sub(other.high), self.high.saturating_sub(other.low));
         match (self.known(), other.known()) {
             (Some(a), Some(b)) => return Value::integer(a.saturating_sub(b)),
@@ -208,7 +208,7 @@ impl Value {
     }
 
     /// `self * other`.
-    pub fn times(&self, other: &Value) -> Value {
+    pub(super) fn times(&self, other: &Value) -> Value {
         match (self.known(), other.known()) {
             (Some(a), Some(b)) => return Value::integer(a.saturating_mul(b)),
             (_, Some(1)) => return self.clone(),
@@ -228,7 +228,7 @@ impl Value {
 
     /// `self / divisor` of numbers that are not negative, `divisor` not zero: the quotient without
     /// its fraction.
-    pub fn over(&self, divisor: &Value) -> Value {
+    pub(super) fn over(&self, divisor: &Value) -> Value {
         if divisor.known() == Some(1) {
             return self.clone();
         }
@@ -237,14 +237,14 @@ impl Value {
     }
 
     /// `self % divisor` of numbers that are not negative, `divisor` not zero.
-    pub fn rest(&self, divisor: &Value) -> Value {
+    pub(super) fn rest(&self, divisor: &Value) -> Value {
         let high = divisor.high.saturating_sub(1).min(self.high);
         Value::compound(format!("{} % {}", self.factor(), divisor.atom()), Bind::Product, 0, high)
     }
 
     /// `-self`.
     #[must_use]
-    pub fn negated(&self) -> Value {
+    pub(super) fn negated(&self) -> Value {
         match self.known() {
             Some(value) => Value::integer(value.saturating_neg()),
             None => {
@@ -256,7 +256,7 @@ impl Value {
 
     /// `ABS(self)`; nothing where it cannot be negative.
     #[must_use]
-    pub fn magnitude(&self) -> Value {
+    pub(super) fn magnitude(&self) -> Value {
         if self.low >= 0 {
             return self.clone();
         }
@@ -269,7 +269,7 @@ impl Value {
     }
 
     /// `self & other`: of 32 bits in two's complement.
-    pub fn bit_and(&self, other: &Value) -> Value {
+    pub(super) fn bit_and(&self, other: &Value) -> Value {
         if let (Some(a), Some(b)) = (self.known(), other.known()) {
             return Value::integer(a & b);
         }
@@ -283,7 +283,7 @@ impl Value {
     }
 
     /// `self | other`.
-    pub fn bit_or(&self, other: &Value) -> Value {
+    pub(super) fn bit_or(&self, other: &Value) -> Value {
         match (self.known(), other.known()) {
             (Some(a), Some(b)) => return Value::integer(a | b),
             (Some(0), _) => return other.clone(),
@@ -295,7 +295,7 @@ impl Value {
     }
 
     /// The exclusive or, by operators that are known: `(a | b) - (a & b)`.
-    pub fn bit_xor(&self, other: &Value) -> Value {
+    pub(super) fn bit_xor(&self, other: &Value) -> Value {
         if let (Some(a), Some(b)) = (self.known(), other.known()) {
             return Value::integer(a ^ b);
         }
@@ -306,12 +306,12 @@ impl Value {
 
     /// Every bit inverted: `-1 - self`.
     #[must_use]
-    pub fn inverted(&self) -> Value {
+    pub(super) fn inverted(&self) -> Value {
         Value::integer(-1).minus(self)
     }
 
     /// A float as it stands in an expression of floats: integers are converted.
-    pub fn as_float(&self) -> Value {
+    pub(super) fn as_float(&self) -> Value {
         match (self.width, self.known()) {
             (Width::Float, _) => self.clone(),
             (_, Some(value)) => Value::real(value as f32),
@@ -329,7 +329,7 @@ impl Value {
     }
 
     /// An operation of floats: `+`, `-`, `*` or `/`.
-    pub fn float_operation(&self, sign: char, other: &Value) -> Value {
+    pub(super) fn float_operation(&self, sign: char, other: &Value) -> Value {
         if let (Some(a), Some(b)) = (self.constant, other.constant) {
             let (a, b) = (a.float(), b.float());
             return Value::real(match sign {
@@ -351,13 +351,13 @@ impl Value {
     }
 
     /// A function of a float.
-    pub fn float_function(&self, name: &str) -> Value {
+    pub(super) fn float_function(&self, name: &str) -> Value {
         float(format!("{name}({})", self.as_float().text), Bind::Atom)
     }
 
     /// `-self` of a float.
     #[must_use]
-    pub fn float_negated(&self) -> Value {
+    pub(super) fn float_negated(&self) -> Value {
         match self.as_float() {
             Value { constant: Some(Number::Float(value)), .. } => Value::real(-value),
             value => float(format!("-{}", value.atom()), Bind::Sign),
@@ -367,7 +367,7 @@ impl Value {
 
 impl Value {
     /// Its constant value as a float.
-    pub fn known_float(&self) -> Option<f32> {
+    pub(super) fn known_float(&self) -> Option<f32> {
         self.constant.map(Number::float)
     }
 }
@@ -382,7 +382,7 @@ fn joint_limits(a: &Value, b: &Value) -> (i64, i64) {
 }
 
 /// `IF(condition, then, otherwise)`.
-pub fn choose(condition: &str, then: &Value, otherwise: &Value) -> Value {
+pub(super) fn choose(condition: &str, then: &Value, otherwise: &Value) -> Value {
     let text = format!("IF({condition}, {}, {})", then.text, otherwise.text);
     if then.is_float() || otherwise.is_float() {
         return float(text, Bind::Atom);
@@ -391,18 +391,18 @@ pub fn choose(condition: &str, then: &Value, otherwise: &Value) -> Value {
 }
 
 /// A condition of an expression, `sign` one of `==`, `>` and `<`.
-pub fn relation(a: &Value, sign: &str, b: &Value) -> String {
+pub(super) fn relation(a: &Value, sign: &str, b: &Value) -> String {
     format!("{} {sign} {}", a.tight(Bind::Sum), b.tight(Bind::Sum))
 }
 
 /// The value kept between the limits of a width.
-pub fn limited(value: &Value, width: Width) -> Value {
+pub(super) fn limited(value: &Value, width: Width) -> Value {
     let (low, high) = limits(width);
     between(value, low, high)
 }
 
 /// The value kept between two numbers.
-pub fn between(value: &Value, low: i64, high: i64) -> Value {
+pub(super) fn between(value: &Value, low: i64, high: i64) -> Value {
     let inner = if value.low < low {
         choose(&relation(value, "<", &Value::integer(low)), &Value::integer(low), value)
     } else {
@@ -417,7 +417,7 @@ pub fn between(value: &Value, low: i64, high: i64) -> Value {
 }
 
 /// The low 16 bits as a signed word.
-pub fn wrapped(value: &Value) -> Value {
+pub(super) fn wrapped(value: &Value) -> Value {
     let shifted = value.plus(&Value::integer(32_768)).bit_and(&Value::integer(65_535));
     shifted.minus(&Value::integer(32_768)).bounded(-32_768, 32_767)
 }
@@ -425,7 +425,7 @@ pub fn wrapped(value: &Value) -> Value {
 /// `dividend / divisor` rounded to the nearest integer, halves away from zero, as one expression.
 ///
 /// `divisor` is a positive constant; every sum fits 32 bits, or `None`.
-pub fn rounded_quotient(dividend: &Value, divisor: i64) -> Option<Value> {
+pub(super) fn rounded_quotient(dividend: &Value, divisor: i64) -> Option<Value> {
     let half = Value::integer(divisor / 2);
     let by = Value::integer(divisor);
     let positive = dividend.plus(&half);
@@ -485,10 +485,7 @@ mod tests {
     #[test]
     fn quotients_round_halves_away() {
         let text = |value: Option<Value>| value.map(|value| value.text().to_owned());
-        assert_eq!(
-            text(rounded_quotient(&n(1), 10)).as_deref(),
-            Some("IF(N1 < 0, -((5 - N1) / 10), (N1 + 5) / 10)")
-        );
+        assert_eq!(text(rounded_quotient(&n(1), 10)).as_deref(), Some("IF(N1 < 0, -((5 - N1) / 10), (N1 + 5) / 10)"));
         assert_eq!(text(rounded_quotient(&n(1).bounded(0, 100), 3)).as_deref(), Some("(N1 + 1) / 3"));
         assert_eq!(rounded_quotient(&Value::element("D1", Width::Long), 10), None);
     }
