@@ -23,7 +23,7 @@ pub fn container(bytes: &[u8]) {
             return;
         }
     };
-    let sound = project.deviations().next().is_none();
+    let sound = project.missing().next().is_none() && project.deviations().next().is_none();
     assert_eq!(strict.is_ok(), sound);
     let account = rss::verify::verify(&project);
     for stream in &account.streams {

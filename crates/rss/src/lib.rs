@@ -34,6 +34,6 @@ pub use archive::{Parsed, Record, parse, serialize};
 pub use container::Container;
 pub use error::{Deviation, Error, Foreign, Mode, Result, Space};
 pub use identify::identify;
-pub use project::{Project, Stream};
+pub use project::{Missing, Project, Stream};
 pub use stream::{ImageKind, StreamKind};
 pub use text::Text;

@@ -26,8 +26,30 @@ struct Slot {
 pub struct Project {
     container: Container,
     slots: Vec<Slot>,
-    missing: Vec<Deviation>,
+    missing: Vec<Missing>,
 }
+
+/// A stream that every project has and this one lacks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missing {
+    /// What was looked for.
+    pub deviation: Deviation,
+    /// Without it the program is not whole: its processor, its ladder or all of its data.
+    pub essential: bool,
+}
+
+/// The streams of an image that describe the program. Every project seen has them in its main image
+/// and, [`StreamKind::MemDatabase`] excepted, in its online image.
+const PROGRAM: [StreamKind; 8] = [
+    StreamKind::Processor,
+    StreamKind::ProgramFiles,
+    StreamKind::DataFiles,
+    StreamKind::ExtensionalDataFiles,
+    StreamKind::MemDatabase,
+    StreamKind::IoConfiguration,
+    StreamKind::ChannelConfiguration,
+    StreamKind::Compiler,
+];
 
 /// One stream of a [`Project`].
 #[derive(Clone, Copy, Debug)]
@@ -57,18 +79,9 @@ impl Project {
         }
         let mut project = Project { container, ..Project::default() };
         project.index();
-        if project.stream(ImageKind::Main, StreamKind::Processor).is_none() {
-            project.missing.push(Deviation {
-                stream: String::new(),
-                space: Space::File,
-                offset: 0,
-                record: String::new(),
-                expected: format!("a stream {}", StreamKind::Processor.path(ImageKind::Main)),
-                found: "none".to_owned(),
-            });
-        }
+        project.look_for_missing();
         if mode == Mode::Strict
-            && let Some(first) = project.deviations().next()
+            && let Some(first) = project.missing().map(|missing| &missing.deviation).chain(project.deviations()).next()
         {
             return Err(first.clone().into());
         }
@@ -98,6 +111,39 @@ impl Project {
         }
     }
 
+    fn look_for_missing(&mut self) {
+        let images: Vec<_> = self.images().filter(|&image| image != ImageKind::Main).collect();
+        for image in std::iter::once(ImageKind::Main).chain(images) {
+            let lacks = |kind| self.stream(image, kind).is_none();
+            // The two data streams hold the same tables.
+            let no_data = lacks(StreamKind::DataFiles) && lacks(StreamKind::ExtensionalDataFiles);
+            let missing = PROGRAM.into_iter().filter(|&kind| lacks(kind)).filter_map(|kind| {
+                let essential = match kind {
+                    StreamKind::Processor | StreamKind::ProgramFiles => true,
+                    StreamKind::DataFiles => no_data,
+                    StreamKind::MemDatabase if image == ImageKind::Online => return None,
+                    _ => false,
+                };
+                let deviation = Deviation {
+                    stream: String::new(),
+                    space: Space::File,
+                    offset: 0,
+                    record: String::new(),
+                    expected: format!("a stream {}", kind.path(image)),
+                    found: "none".to_owned(),
+                };
+                Some(Missing { deviation, essential })
+            });
+            let missing: Vec<_> = missing.collect();
+            self.missing.extend(missing);
+        }
+    }
+
+    /// Streams that every project has and this one lacks.
+    pub fn missing(&self) -> impl Iterator<Item = &Missing> {
+        self.missing.iter()
+    }
+
     /// The compound file, with stored (not inflated) stream contents.
     #[must_use]
     pub fn container(&self) -> &Container {
@@ -122,12 +168,12 @@ impl Project {
         })
     }
 
-    /// Everything that deviates below the level of records: missing streams,
-    /// streams cut short, envelopes, zlib streams. Opens every payload.
+    /// Everything that deviates below the level of records: streams cut short,
+    /// envelopes, zlib streams. Opens every payload.
     pub fn deviations(&self) -> impl Iterator<Item = &Deviation> {
-        self.missing
+        self.container
+            .damage
             .iter()
-            .chain(&self.container.damage)
             .chain(self.slots.iter().flat_map(|slot| Stream { project: self, slot }.deviations()))
     }
 
@@ -251,6 +297,11 @@ mod tests {
 
     fn sample() -> Project {
         let mut p = Project::new();
+        for (image, kind) in
+            [ImageKind::Main, ImageKind::Online].into_iter().flat_map(|i| PROGRAM.map(|kind| (i, kind)))
+        {
+            p.set_payload(image, kind, b"payload").expect("sets");
+        }
         p.set_payload(ImageKind::Main, StreamKind::Processor, b"raw payload").expect("sets");
         p.set_payload(ImageKind::Online, StreamKind::ProgramFiles, &[5; 9000]).expect("sets");
         p.set_payload(ImageKind::Main, StreamKind::Contents, b"plain").expect("sets");
@@ -265,9 +316,9 @@ mod tests {
         assert_eq!(payload(ImageKind::Main, StreamKind::Processor), Some(b"raw payload".to_vec()));
         assert_eq!(payload(ImageKind::Online, StreamKind::ProgramFiles), Some(vec![5; 9000]));
         assert_eq!(payload(ImageKind::Main, StreamKind::Contents), Some(b"plain".to_vec()));
-        assert_eq!(payload(ImageKind::Main, StreamKind::ProgramFiles), None);
+        assert_eq!(payload(ImageKind::Main, StreamKind::Trends), None);
         assert_eq!(back.images().collect::<Vec<_>>(), [ImageKind::Main, ImageKind::Online]);
-        assert_eq!(back.streams().count(), 3);
+        assert_eq!(back.streams().count(), 2 * PROGRAM.len() + 1);
     }
 
     #[test]
@@ -300,6 +351,28 @@ mod tests {
         assert_eq!(back.deviations().count(), 1);
         assert_eq!(back.stream(ImageKind::Main, StreamKind::Processor).map(|s| s.payload()), Some(&b"raw payload"[..]));
         assert!(matches!(Project::read(&bytes, Mode::Strict), Err(Error::Record(_))));
+    }
+
+    #[test]
+    fn missing_streams_are_told() {
+        let without = |image: ImageKind, gone: &[StreamKind]| {
+            let whole = sample();
+            let mut p = Project::new();
+            for stream in whole.streams().filter(|s| s.image() != image || !gone.contains(&s.kind())) {
+                p.set_payload(stream.image(), stream.kind(), stream.payload()).expect("sets");
+            }
+            let bytes = p.write().expect("writes");
+            let back = Project::read(&bytes, Mode::Permissive).expect("reads");
+            assert_eq!(Project::read(&bytes, Mode::Strict).is_ok(), back.missing().next().is_none());
+            back.missing().map(|missing| missing.essential).collect::<Vec<_>>()
+        };
+        use StreamKind::{DataFiles, ExtensionalDataFiles, IoConfiguration, MemDatabase, ProgramFiles};
+        assert!(without(ImageKind::Main, &[]).is_empty());
+        assert_eq!(without(ImageKind::Main, &[ProgramFiles]), [true]);
+        assert_eq!(without(ImageKind::Main, &[IoConfiguration]), [false]);
+        assert_eq!(without(ImageKind::Main, &[DataFiles]), [false]);
+        assert_eq!(without(ImageKind::Main, &[DataFiles, ExtensionalDataFiles]), [true, false]);
+        assert!(without(ImageKind::Online, &[MemDatabase]).is_empty());
     }
 
     #[test]

@@ -102,7 +102,7 @@ fn reports(bytes: &[u8]) -> bool {
                     assert!(error.deviation().is_some(), "{error}: without a place");
                 }
             }
-            in_streams || project.deviations().next().is_some()
+            in_streams || project.missing().next().is_some() || project.deviations().next().is_some()
         }
         Err(error) => {
             assert!(error.deviation().is_some() || matches!(error, Error::Foreign(_)), "{error}: without a place");

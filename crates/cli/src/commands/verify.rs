@@ -20,30 +20,37 @@ pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
         let name = path.display().to_string();
         let verification = rss::verify::verify(&project);
         let code = check_code(&project);
+        let missing: Vec<_> = project.missing().collect();
         if arguments.json {
-            writeln!(out, "{}", line(&name, &verification, &code))?;
+            writeln!(out, "{}", line(&name, &verification, &missing, &code))?;
         } else {
-            print(&name, &verification, &code, &mut Printable(out))?;
+            print(&name, &verification, &missing, &code, &mut Printable(out))?;
         }
-        Ok(Ok(judge(&verification, &code)))
+        Ok(Ok(judge(&verification, &missing, &code)))
     })
 }
 
-/// A stream that could not be opened or read to its end is unreadable input; deviations, and bytes or
-/// code that differ, are a finding.
-fn judge(verification: &rss::verify::Verification, code: &CodeCheck) -> Outcome {
+/// A stream that is missing where there is no program without it, or could not be opened or read to
+/// its end, is unreadable input; deviations, other missing streams, and bytes or code that differ, are a
+/// finding.
+fn judge(verification: &rss::verify::Verification, missing: &[&rss::Missing], code: &CodeCheck) -> Outcome {
     let deviations = || verification.streams.iter().flat_map(|stream| &stream.deviations);
     let unopened = deviations().any(|deviation| deviation.space != rss::Space::Inflated);
-    if unopened || verification.streams.iter().any(|stream| stream.error.is_some()) {
+    if unopened || missing.iter().any(|missing| missing.essential) || verification.streams.iter().any(|stream| stream.error.is_some()) {
         Outcome::Unreadable
-    } else if !verification.roundtrip || !code.differs.is_empty() || deviations().next().is_some() {
+    } else if !verification.roundtrip || !code.differs.is_empty() || !missing.is_empty() || deviations().next().is_some() {
         Outcome::Finding
     } else {
         Outcome::Done
     }
 }
 
-fn line(name: &str, verification: &rss::verify::Verification, code: &CodeCheck) -> Value {
+fn line(
+    name: &str,
+    verification: &rss::verify::Verification,
+    missing: &[&rss::Missing],
+    code: &CodeCheck,
+) -> Value {
     let streams = verification.streams.iter().map(|stream| {
         let mut value = json!({
             "stream": stream.stream,
@@ -62,6 +69,7 @@ fn line(name: &str, verification: &rss::verify::Verification, code: &CodeCheck) 
     json!({
         "file": name,
         "streams": streams.collect::<Value>(),
+        "missing": missing.iter().map(|missing| missing.deviation.to_string()).collect::<Value>(),
         "roundtrip": verification.roundtrip,
         "code_agrees": code.agrees,
         "code_differs": code.differs.iter().map(difference).collect::<Value>(),
@@ -84,6 +92,7 @@ fn difference(difference: &CodeDifference) -> Value {
 fn print(
     name: &str,
     verification: &rss::verify::Verification,
+    missing: &[&rss::Missing],
     code: &CodeCheck,
     out: &mut impl Write,
 ) -> Result<(), Error> {
@@ -118,6 +127,9 @@ fn print(
                 found.stream, found.file, found.rung, found.instruction, found.text, found.code
             )?;
         }
+    }
+    for missing in missing {
+        writeln!(out, "  {}: {}", if missing.essential { "ERROR" } else { "deviation" }, missing.deviation)?;
     }
     for stream in &verification.streams {
         if let Some(error) = &stream.error {

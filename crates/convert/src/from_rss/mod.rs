@@ -25,6 +25,10 @@ use documentation::Comments;
 /// times are filled in here.
 pub fn project(file: &rss::Project, source: Source) -> Project {
     let mut reader = ImageReader { file, comments: Comments::default(), diagnostics: Vec::new() };
+    for missing in file.missing() {
+        let severity = if missing.essential { Severity::Error } else { Severity::Warning };
+        reader.diagnostics.push(diagnostic(severity, &missing.deviation));
+    }
     for deviation in file.deviations() {
         reader.diagnostics.push(diagnostic(Severity::Error, deviation));
     }
