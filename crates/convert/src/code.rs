@@ -8,7 +8,7 @@
 use std::fmt;
 
 use instr::{Form, Instruction as Definition, Kind, Role};
-use ladder::{Address, Constant, Expression, FileType, Instruction, Number, Operand, Operator};
+use ladder::{Address, Constant, Expression, FileType, Instruction, Number, Operand, Operator, TimeBase};
 use rss::code::{self, Code, FilePlace, Step};
 
 use crate::codes;
@@ -46,6 +46,15 @@ impl fmt::Display for CodeError {
 }
 
 impl std::error::Error for CodeError {}
+
+/// Time base of a timer's operand text and of its operation code, where they are not the same. No byte
+/// of the compiled code holds the time base: it is the operation code that says it.
+pub(crate) fn other_time_base<'o>(form: &Form, operands: &'o [Operand]) -> Option<(&'o Operand, &'static str)> {
+    let coded = form.time_base?;
+    // The time base follows the timer. One that is not entered yet differs from nothing.
+    let text = operands.get(1).filter(|text| !matches!(text, Operand::Unset | Operand::Empty))?;
+    (TimeBase::from_text(&text.to_string()) != Some(coded)).then(|| (text, coded.text()))
+}
 
 /// The compiled code of an instruction in a given form of the table. Values displayed beside the
 /// operands decide the type of some constants, as they do in RSLogix.

@@ -70,7 +70,10 @@ impl CodeCheck {
             Some((definition, form)) => code::compile(definition, form, &model),
             None => Err(CodeError::NoOpcode(model.mnemonic.to_string())),
         };
-        if expected.as_ref().is_ok_and(|code| *code == *stored.code) {
+        let other_base = instr::by_opcode(stored.opcode)
+            .and_then(|(_, form)| code::other_time_base(form, &model.operands))
+            .map(|(_, code)| format!(" (operation code of time base {code})"));
+        if other_base.is_none() && expected.as_ref().is_ok_and(|code| *code == *stored.code) {
             self.agrees += 1;
             return;
         }
@@ -81,7 +84,7 @@ impl CodeCheck {
             rung,
             instruction: model.mnemonic.to_string(),
             text: texts.join(" "),
-            code: spell(&stored.code),
+            code: spell(&stored.code) + &other_base.unwrap_or_default(),
         };
         match expected {
             // A text that is no address stands where the code has one: they do differ.

@@ -145,6 +145,15 @@ pub(crate) fn instruction(stored: &program::Instruction<'_>, notes: &mut Notes<'
             (texts.iter().map(|text| Operand::parse(&text.decode())).collect(), Vec::new())
         }
     };
+    if let Some((instruction, form)) = known
+        && let Some((text, code)) = code::other_time_base(form, &operands)
+    {
+        let timer = operands.first().map(ToString::to_string).unwrap_or_default();
+        notes.warning(format!(
+            "expected one time base for {} {timer}, found {text} in its text and the operation code of {code}",
+            instruction.mnemonic
+        ));
+    }
     Instruction {
         mnemonic,
         operands,
