@@ -220,6 +220,16 @@ impl DataFile {
         }
     }
 
+    /// Words as RSLogix counts them in the data file list of its printouts: three per element of O
+    /// and I (value and two force masks), none of the status file, else those of the elements.
+    pub fn listed_words(&self) -> usize {
+        match self.file_type {
+            FileType::O | FileType::I => 3 * usize::from(self.elements),
+            FileType::S => 0,
+            _ => usize::from(self.elements) * usize::from(self.words_per_element),
+        }
+    }
+
     /// The words of an element, or `None` beyond the file's end.
     pub fn element_words(&self, element: u16) -> Option<&[u16]> {
         if element >= self.elements {

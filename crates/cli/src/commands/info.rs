@@ -36,16 +36,6 @@ fn data_files(image: &Image) -> impl Iterator<Item = &ladder::DataFile> {
     image.data_files.iter().filter(|file| file.file_type != FileType::Unused)
 }
 
-/// Words as RSLogix counts them in its data file list: O and I with their two force words, the status
-/// file not at all.
-fn listed_words(file: &ladder::DataFile) -> usize {
-    match file.file_type {
-        FileType::O | FileType::I => 3 * usize::from(file.elements),
-        FileType::S => 0,
-        _ => usize::from(file.elements) * usize::from(file.words_per_element),
-    }
-}
-
 fn describe(opened: &Opened) -> Value {
     let (project, image) = (&opened.project, opened.image());
     let (source, processor) = (&project.source, &image.processor);
@@ -116,7 +106,7 @@ fn describe(opened: &Opened) -> Value {
             "name": file.name,
             "description": file.description,
             "elements": file.elements,
-            "words": listed_words(file),
+            "words": file.listed_words(),
             "forced": file.has_forces(),
         })).collect::<Value>(),
         "documentation": {
@@ -277,7 +267,7 @@ fn print_data_files(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
             file.name.clone(),
             file.number.to_string(),
             file.file_type.to_string(),
-            listed_words(file).to_string(),
+            file.listed_words().to_string(),
             file.elements.to_string(),
             last,
             file.description.clone() + if file.has_forces() { "  [FORCED]" } else { "" },

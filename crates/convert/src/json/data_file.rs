@@ -22,15 +22,11 @@ pub(super) fn data_file(doc: DataFileDoc<'_>, path: &Path<'_>) -> Result<DataFil
     for (index, patch) in doc.raw.iter().enumerate() {
         patch_words(&mut words, patch, &raw.index(index))?;
     }
-    if words.len() != doc.words {
-        let expected = format!("{}, the words of the values", words.len());
-        return Err(path.member("words").error(expected, doc.words.to_string()));
-    }
     let forces = match &doc.forces {
         None => Vec::new(),
         Some(list) => forces(list, doc.force_words.unwrap_or(words.len()), words.len(), path)?,
     };
-    Ok(DataFile {
+    let file = DataFile {
         number: doc.number,
         file_type,
         name: doc.name.into_owned(),
@@ -39,7 +35,13 @@ pub(super) fn data_file(doc: DataFileDoc<'_>, path: &Path<'_>) -> Result<DataFil
         words_per_element,
         words,
         forces,
-    })
+    };
+    // Other writers may not know how RSLogix counts O, I and S.
+    if ![file.listed_words(), file.words.len()].contains(&doc.words) {
+        let expected = format!("{}, as the data file list counts them", file.listed_words());
+        return Err(path.member("words").error(expected, doc.words.to_string()));
+    }
+    Ok(file)
 }
 
 /// The type that writes itself so.

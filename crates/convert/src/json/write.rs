@@ -201,7 +201,7 @@ fn data_file<'a>(file: &'a DataFile, io: &IoConfiguration) -> DataFileDoc<'a> {
         name: text(&file.name),
         description: text(&file.description),
         elements: file.elements,
-        words: file.words.len(),
+        words: file.listed_words(),
         words_per_element: Some(file.words_per_element),
         raw: raw(file, &values),
         values,
