@@ -151,9 +151,17 @@ impl Report<'_> {
         self.calls.files.iter().filter(|file| file.called_by.is_empty() && file.number != 2)
     }
 
-    /// Module and point of an I/O address.
+    /// Module and point of an I/O address, or that there is none.
     fn module(&self, address: &Address) -> Option<String> {
-        let point = self.opened.image().io.resolve(address)?;
+        let io = &self.opened.image().io;
+        let Some(point) = io.resolve(address) else {
+            let slot = address.element.number().filter(|_| address.file_type.has_slots() && address.is_direct())?;
+            return Some(match io.slots.iter().any(|of| of.number == slot) {
+                _ if io.unknown.is_some() => format!("slot {slot}, I/O configuration not understood"),
+                true => format!("slot {slot}, the module has no such word"),
+                false => format!("no module in slot {slot}"),
+            });
+        };
         let module = &point.slot.module;
         let name = module.catalog.as_deref().unwrap_or("unknown module");
         let bit =
