@@ -18,14 +18,21 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
         let mut printable = Printable(&mut *out);
         let out: &mut dyn Write = if arguments.input.json { out } else { &mut printable };
         let mut outcome = Outcome::Done;
-        let mut json_files = Vec::new();
+        let (mut json_files, mut json_function_files) = (Vec::new(), Vec::new());
         let mut json_values = Vec::new();
         if !arguments.input.json {
             writeln!(out, "{}", opened.title())?;
         }
         for choice in choices(opened, &wanted) {
             match choice {
-                Choice::File(file) if arguments.input.json => json_files.push(FileRow::of(opened, file)),
+                Choice::File(file) if arguments.input.json => {
+                    let row = FileRow::of(opened, file);
+                    // Function files share numbers with data files.
+                    match is_function_file(opened, file) {
+                        true => json_function_files.push(row),
+                        false => json_files.push(row),
+                    }
+                }
                 Choice::File(file) => print_file(opened, file, arguments.radix, out)?,
                 Choice::Address(address) => {
                     let value = opened.image().value_at(&address);
@@ -58,6 +65,7 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
             let document = Document {
                 file: opened.path.display().to_string(),
                 data_files: json_files,
+                function_files: json_function_files,
                 values: json_values,
                 diagnostics: diagnostics_json(&opened.project),
             };
@@ -72,8 +80,13 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
 struct Document<'o> {
     file: String,
     data_files: Vec<FileRow<'o>>,
+    function_files: Vec<FileRow<'o>>,
     values: Vec<serde_json::Value>,
     diagnostics: serde_json::Value,
+}
+
+fn is_function_file(opened: &Opened, file: &DataFile) -> bool {
+    opened.image().function_files.iter().any(|of| std::ptr::eq(of, file))
 }
 
 enum Choice<'o> {
