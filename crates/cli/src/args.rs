@@ -110,6 +110,9 @@ pub struct ShowArguments {
     /// Only these program files
     #[arg(long = "file", value_name = "N")]
     pub program_files: Vec<u16>,
+    /// Only these code blocks of a Do-more project
+    #[arg(long = "block", value_name = "NAME")]
+    pub blocks: Vec<String>,
     /// Only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
     #[arg(long, value_name = "A[..B]")]
     pub rung: Option<RungRange>,
@@ -210,12 +213,14 @@ pub struct ExportArguments {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Form {
-    /// Project as JSON (schema rungs.project/1)
+    /// Project as JSON (schema rungs.project/1; of a Do-more project rungs.domore/1)
     Json,
     /// SLC text, RSLogix 500's own text form
     Slc,
     /// A table, see --table
     Csv,
+    /// Text for Do-more Designer, of a Do-more project
+    Domore,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

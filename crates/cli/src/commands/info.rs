@@ -1,26 +1,32 @@
 //! `rungs info`: what a project is.
 
+use std::cell::Cell;
 use std::io::Write;
 
 use analysis::{Coverage, CrossReference};
 use ladder::{FileType, Image, ProgramFileKind, Severity};
 use serde_json::{Value, json};
 
-use super::{Opened, each_project, write_json};
+use super::{Opened, domore, each_dialect, write_json};
 use crate::args::InfoArguments;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &InfoArguments) -> Result<Outcome, Error> {
-    let mut first = true;
-    each_project(&arguments.files, &arguments.input, |opened, out| {
-        if arguments.input.json {
+    let json = arguments.input.json;
+    let first = Cell::new(true);
+    let separate = |out: &mut dyn Write| if first.replace(false) || json { Ok(()) } else { writeln!(out) };
+    let slc = |opened: &Opened, out: &mut dyn Write| {
+        separate(out)?;
+        if json {
             write_json(opened, describe(opened), out)?;
         } else {
-            if !std::mem::take(&mut first) {
-                writeln!(out)?;
-            }
             print(opened, &mut Printable(out))?;
         }
+        Ok(Outcome::Done)
+    };
+    each_dialect(&arguments.files, &arguments.input, slc, |opened, out| {
+        separate(out)?;
+        domore::info(opened, json, &mut Printable(out))?;
         Ok(Outcome::Done)
     })
 }

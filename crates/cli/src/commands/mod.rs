@@ -2,6 +2,7 @@
 
 mod build;
 mod data;
+mod domore;
 mod export;
 mod info;
 mod junit;
@@ -16,10 +17,12 @@ mod xref;
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
+use convert::AnyProject;
 use ladder::{Documentation, Image, Project, Severity};
 use rss::Mode;
 
 use crate::args::{Arguments, Command, ImageChoice, Input};
+use crate::commands::domore::OpenedDomore;
 use crate::files;
 use crate::output::{Error, Outcome, printable};
 
@@ -92,8 +95,11 @@ fn read_file(path: &Path, limit: usize) -> Result<Vec<u8>, String> {
 
 pub(crate) fn open(path: &Path, mode: Mode) -> Result<Project, String> {
     let bytes = read_file(path, MOST_BYTES)?;
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    convert::open(&bytes, &name, mode).map_err(|error| error.to_string())
+    convert::open(&bytes, &file_name(path), mode).map_err(|error| error.to_string())
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 fn mode(strict: bool) -> Mode {
@@ -120,6 +126,49 @@ fn each_project(
             std::mem::forget(opened);
         }
         Ok(Ok(outcome))
+    })
+}
+
+/// As [`each_project`], with projects of Do-more handed to `domore`.
+fn each_dialect(
+    paths: &[PathBuf],
+    input: &Input,
+    mut work: impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
+    mut domore: impl FnMut(&OpenedDomore, &mut dyn Write) -> Result<Outcome, Error>,
+) -> Result<Outcome, Error> {
+    each_file(paths, input.json, |path, is_last, mut out| {
+        let bytes = match read_file(path, MOST_BYTES) {
+            Ok(bytes) => bytes,
+            Err(why) => return Ok(Err(why)),
+        };
+        let path = path.to_owned();
+        match convert::open_any(&bytes, &file_name(&path), mode(input.strict)) {
+            Ok(AnyProject::Rslogix(project)) => {
+                let opened = Opened { path, project: *project, choice: input.image };
+                let outcome = one_project(&opened, input.json, out, &mut work)?;
+                if is_last {
+                    std::mem::forget(opened);
+                }
+                Ok(Ok(outcome))
+            }
+            Ok(AnyProject::Domore(_)) if input.image != ImageChoice::Main => {
+                eprintln!("{}: the project holds no such image", path.display());
+                Ok(Ok(Outcome::Finding))
+            }
+            Ok(AnyProject::Domore(document)) => {
+                let opened = OpenedDomore { path, document: *document };
+                let outcome = domore(&opened, &mut out)?.max(opened.outcome());
+                if !input.json {
+                    out.flush()?;
+                    opened.warn();
+                }
+                if is_last {
+                    std::mem::forget(opened);
+                }
+                Ok(Ok(outcome))
+            }
+            Err(why) => Ok(Err(why.to_string())),
+        }
     })
 }
 

@@ -6,7 +6,7 @@ use convert::slc::rung::rung_text;
 use ladder::{ProgramFile, ProgramFileKind};
 use serde_json::json;
 
-use super::{Opened, each_project, write_json};
+use super::{Opened, domore, each_dialect, write_json};
 use crate::args::ShowArguments;
 use crate::output::{Error, Outcome};
 
@@ -25,8 +25,12 @@ pub fn run(arguments: &ShowArguments) -> Result<Outcome, Error> {
         ascii: arguments.ascii,
         ..render::Style::default()
     };
-    each_project(&arguments.files, &arguments.input, |opened, out| {
+    let slc = |opened: &Opened, out: &mut dyn Write| {
         let mut outcome = Outcome::Done;
+        if !arguments.blocks.is_empty() {
+            eprintln!("{}: program files have numbers, not names: use --file N", opened.path.display());
+            outcome = Outcome::Finding;
+        }
         for number in &arguments.program_files {
             if opened.image().program_file(*number).is_none_or(|file| file.kind != ProgramFileKind::Ladder) {
                 eprintln!("{}: program file {number} holds no ladder", opened.path.display());
@@ -46,7 +50,8 @@ pub fn run(arguments: &ShowArguments) -> Result<Outcome, Error> {
             draw(opened, arguments, &style, out)?;
         }
         Ok(outcome)
-    })
+    };
+    each_dialect(&arguments.files, &arguments.input, slc, |opened, out| domore::show(opened, arguments, &style, out))
 }
 
 /// The ladder files that were asked for.

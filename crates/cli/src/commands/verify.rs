@@ -1,21 +1,28 @@
 //! `rungs verify`: every byte accounted for.
 
 use std::io::Write;
+use std::path::Path;
 
+use convert::AnyProject;
+use convert::designer::is_designer;
 use convert::verify::{CodeCheck, CodeDifference, check_code};
 use serde_json::{Value, json};
 
-use super::{MOST_BYTES, each_file, mode, read_file};
+use super::domore::{self, OpenedDomore};
+use super::{MOST_BYTES, each_file, file_name, mode, read_file};
 use crate::args::VerifyArguments;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
     each_file(&arguments.files, arguments.json, |path, _, out| {
-        let read = read_file(path, MOST_BYTES)
-            .and_then(|bytes| rss::Project::read(&bytes, mode(arguments.strict)).map_err(|error| error.to_string()));
-        let project = match read {
-            Ok(project) => project,
+        let bytes = match read_file(path, MOST_BYTES) {
+            Ok(bytes) => bytes,
             Err(why) => return Ok(Err(why)),
+        };
+        let project = match rss::Project::read(&bytes, mode(arguments.strict)) {
+            Ok(project) => project,
+            Err(_) if is_designer(&bytes) => return designer(path, &bytes, arguments, out),
+            Err(why) => return Ok(Err(why.to_string())),
         };
         let name = path.display().to_string();
         let verification = rss::verify::verify(&project);
@@ -28,6 +35,28 @@ pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
         }
         Ok(Ok(judge(&verification, &missing, &code)))
     })
+}
+
+/// A text for Do-more Designer.
+fn designer(
+    path: &Path,
+    bytes: &[u8],
+    arguments: &VerifyArguments,
+    out: &mut dyn Write,
+) -> Result<Result<Outcome, String>, Error> {
+    match convert::open_any(bytes, &file_name(path), mode(arguments.strict)) {
+        Ok(AnyProject::Domore(document)) => {
+            let opened = OpenedDomore { path: path.to_owned(), document: *document };
+            let outcome = domore::verify(&opened, bytes, arguments.json, &mut Printable(&mut *out))?;
+            if !arguments.json {
+                out.flush()?;
+                opened.warn();
+            }
+            Ok(Ok(outcome))
+        }
+        Ok(AnyProject::Rslogix(_)) => Ok(Err("expected a project file or a Do-more text".to_owned())),
+        Err(why) => Ok(Err(why.to_string())),
+    }
 }
 
 /// A stream that is missing where there is no program without it, or could not be opened or read to

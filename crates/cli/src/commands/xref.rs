@@ -7,14 +7,14 @@ use ladder::Address;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Opened, diagnostics_json, each_project, one_line, places};
+use super::{Opened, diagnostics_json, domore, each_dialect, one_line, places};
 use crate::args::XrefArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &XrefArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
-    each_project(&paths, &arguments.input, |opened, out| {
+    let slc = |opened: &Opened, out: &mut dyn Write| {
         let xref = CrossReference::build(opened.image(), opened.documentation());
         let calls = CallGraph::build(opened.image(), opened.documentation());
         let mut report =
@@ -32,6 +32,9 @@ pub fn run(arguments: &XrefArguments) -> Result<Outcome, Error> {
             eprintln!("{}: `{text}` is no address, symbol or data file of this program", opened.path.display());
         }
         Ok(if report.unknown.is_empty() { Outcome::Done } else { Outcome::Finding })
+    };
+    each_dialect(&paths, &arguments.input, slc, |opened, out| {
+        domore::xref(opened, &wanted, arguments.findings, arguments.input.json, &mut Printable(out))
     })
 }
 

@@ -1,0 +1,161 @@
+//! `rungs info` of a Do-more project.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use domore::instruction::by_mnemonic;
+use domore::program::{MemoryBlock, Part, Radix};
+use domore::{CodeBlock, Project};
+use serde_json::{Value, json};
+
+use super::OpenedDomore;
+use crate::output::{Columns, Error};
+
+/// What is counted in the instructions of a project.
+struct Figures {
+    instructions: usize,
+    rungs: usize,
+    commented: usize,
+    /// Instructions that are not in the table, with how often each occurs.
+    unknown: BTreeMap<String, usize>,
+    documented: usize,
+    nicknames: usize,
+}
+
+impl Figures {
+    fn of(project: &Project) -> Figures {
+        let rungs = || project.code_blocks().flat_map(|block| &block.rungs);
+        let mut unknown = BTreeMap::new();
+        let mut instructions = 0;
+        for instruction in rungs().flat_map(|rung| &rung.instructions) {
+            instructions += 1;
+            if by_mnemonic(&instruction.mnemonic).is_none() {
+                *unknown.entry(instruction.mnemonic.clone()).or_insert(0) += 1;
+            }
+        }
+        Figures {
+            instructions,
+            rungs: rungs().filter(|rung| !rung.instructions.is_empty()).count(),
+            commented: rungs().filter(|rung| rung.comment.is_some()).count(),
+            unknown,
+            documented: project.documentation().count(),
+            nicknames: project.documentation().filter(|entry| !entry.nickname.is_empty()).count(),
+        }
+    }
+}
+
+fn radix(block: &MemoryBlock) -> &'static str {
+    match block.radix {
+        Some(Radix::Decimal) => "decimal",
+        Some(Radix::Octal) => "octal",
+        None => "",
+    }
+}
+
+fn stages(block: &CodeBlock) -> usize {
+    block.rungs.iter().filter(|rung| rung.stage().is_some()).count()
+}
+
+fn instructions(block: &CodeBlock) -> usize {
+    block.rungs.iter().map(|rung| rung.instructions.len()).sum()
+}
+
+/// Sections that are carried untouched: name and number of lines.
+fn sections(project: &Project) -> impl Iterator<Item = (&str, usize)> {
+    project.parts.iter().filter_map(|part| match part {
+        Part::Raw(section) => Some((section.name.as_str(), section.lines.len())),
+        _ => None,
+    })
+}
+
+pub fn info(opened: &OpenedDomore, json: bool, out: &mut dyn Write) -> Result<(), Error> {
+    if json { opened.write_json(describe(opened), out) } else { print(opened, out) }
+}
+
+fn describe(opened: &OpenedDomore) -> Value {
+    let (source, project) = (&opened.document.source, &opened.document.project);
+    let figures = Figures::of(project);
+    json!({
+        "file": opened.name(),
+        "sha256": source.sha256,
+        "bytes": source.bytes,
+        "processor": {"family": "do-more", "name": project.controller()},
+        "devices": project.devices().map(|device| json!({"name": device.name, "parameters": device.parameters}))
+            .collect::<Value>(),
+        "memory": project.memory().map(|block| json!({
+            "name": block.name, "type": block.type_word, "radix": radix(block), "count": block.count,
+            "extra": block.extra,
+        })).collect::<Value>(),
+        "code_blocks": project.code_blocks().map(|block| json!({
+            "kind": block.kind.title(), "name": block.name, "rungs": block.rungs.len(),
+            "instructions": instructions(block), "stages": stages(block),
+        })).collect::<Value>(),
+        "sections": sections(project).map(|(name, lines)| json!({"name": name, "lines": lines})).collect::<Value>(),
+        "instructions": figures.instructions,
+        "unknown_instructions": figures.unknown,
+        "documentation": {
+            "entries": figures.documented,
+            "nicknames": figures.nicknames,
+            "rungs": figures.rungs,
+            "rungs_with_comment": figures.commented,
+        },
+    })
+}
+
+fn print(opened: &OpenedDomore, out: &mut dyn Write) -> Result<(), Error> {
+    let project = &opened.document.project;
+    let figures = Figures::of(project);
+    writeln!(out, "{}", opened.name())?;
+    let controller = match project.controller() {
+        "" => "not named",
+        model => model,
+    };
+    writeln!(out, "  Controller        {controller}  (Do-more)")?;
+    let mut blocks = Columns::new(&["Name", "Kind", "Rungs", "Instructions", "Stages"]);
+    for block in project.code_blocks() {
+        blocks.row([
+            block.name.clone(),
+            block.kind.title().to_owned(),
+            block.rungs.len().to_string(),
+            instructions(block).to_string(),
+            stages(block).to_string(),
+        ]);
+    }
+    section(out, "Code blocks", &blocks)?;
+    let mut memory = Columns::new(&["Name", "Type", "Count", "Numbers", "Further columns"]);
+    for block in project.memory() {
+        let count = match block.radix {
+            Some(Radix::Octal) => format!("0{:o}", block.count),
+            _ => block.count.to_string(),
+        };
+        let extra = block.extra.join(" ");
+        memory.row([block.name.clone(), block.type_word.clone(), count, radix(block).to_owned(), extra]);
+    }
+    section(out, "Memory", &memory)?;
+    let mut devices = Columns::new(&["Device", "Parameters"]);
+    for device in project.devices() {
+        devices.row([device.name.clone(), device.parameters.join(", ")]);
+    }
+    section(out, "Devices", &devices)?;
+    writeln!(
+        out,
+        "\n  Documentation: {} elements, {} with a nickname; {} of {} rungs have a comment",
+        figures.documented, figures.nicknames, figures.commented, figures.rungs
+    )?;
+    for (name, lines) in sections(project) {
+        writeln!(out, "  Section {name}: {lines} lines, carried untouched")?;
+    }
+    if !figures.unknown.is_empty() {
+        let list: Vec<String> = figures.unknown.iter().map(|(name, count)| format!("{name} ({count})")).collect();
+        writeln!(out, "  Instructions that are not known, carried with their operands: {}", list.join(", "))?;
+    }
+    Ok(())
+}
+
+fn section(out: &mut dyn Write, title: &str, table: &Columns) -> Result<(), Error> {
+    if table.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n  {title}")?;
+    Ok(table.write(out, "    ")?)
+}
