@@ -111,6 +111,8 @@ pub struct Span {
     pub words: u32,
     /// Words per element of the data file.
     pub size: u32,
+    /// Of I and O: index of the first word in the data file; `None` for a word the file does not have.
+    pub stored: Option<u32>,
     /// Where the first word lies. In bit blocks a word takes 16 elements; in D and R an element takes
     /// two words, in SL one takes 42.
     pub at: Element,
@@ -195,20 +197,30 @@ impl Places {
 
     /// I/O words of the configuration and those the program names besides.
     fn io(&mut self, image: &Image, facts: &Facts) {
-        let mut words: BTreeMap<(FileType, u16, u16), (bool, bool)> = BTreeMap::new();
+        let mut words: BTreeMap<(FileType, u16, u16), Option<u32>> = BTreeMap::new();
         for slot in &image.io.slots {
             for (file_type, range) in [(FileType::I, slot.inputs), (FileType::O, slot.outputs)] {
                 let file = image.data_file(file_type, u16::from(file_type == FileType::I));
                 let elements = file.map_or(0, |file| file.elements);
                 for word in 0..range.words {
-                    if range.first_word.saturating_add(word) < elements {
-                        words.insert((file_type, slot.number, word), (false, false));
+                    let index = range.first_word.saturating_add(word);
+                    if index < elements {
+                        words.insert((file_type, slot.number, word), Some(index.into()));
                     }
                 }
             }
         }
-        words.extend(facts.io());
-        for ((file_type, slot, word), (as_word, as_bits)) in words {
+        // Without a configuration the words that are named are the words of the file, in order.
+        let mut next: BTreeMap<FileType, u32> = BTreeMap::new();
+        let mut uses = BTreeMap::new();
+        for (key, usage) in facts.io() {
+            uses.insert(key, usage);
+            let named = next.entry(key.0).or_default();
+            words.entry(key).or_insert_with(|| image.io.slots.is_empty().then_some(*named));
+            *named = named.saturating_add(1);
+        }
+        for ((file_type, slot, word), stored) in words {
+            let (as_word, as_bits) = uses.get(&(file_type, slot, word)).copied().unwrap_or_default();
             let analog = as_word && !as_bits;
             let block = match file_type {
                 FileType::I if analog => Block::Wx,
@@ -218,6 +230,9 @@ impl Places {
                 _ => Block::N,
             };
             self.append(file_type, slot, u32::from(word), 1, 1, block);
+            if let Some(span) = self.spans.last_mut() {
+                span.stored = stored;
+            }
         }
     }
 
@@ -226,7 +241,7 @@ impl Places {
             return;
         }
         let at = Element { block, number: self.next.get(&block).copied().unwrap_or(0) };
-        let span = Span { file_type, file, first_word, words, size, at };
+        let span = Span { file_type, file, first_word, words, size, stored: None, at };
         self.next.insert(block, at.number.saturating_add(span.elements()));
         self.index.entry((file_type, file)).or_default().push(self.spans.len());
         self.spans.push(span);

@@ -252,8 +252,11 @@ impl Emitter {
 
     /// As [`Emitter::when`], with power whatever the power flow is.
     pub fn always<T>(&mut self, body: impl FnOnce(&mut Emitter) -> T) -> T {
+        let rail = self.depth == 0;
         self.when(|e| {
-            e.or_always();
+            if !rail {
+                e.or_always();
+            }
             body(e)
         })
     }

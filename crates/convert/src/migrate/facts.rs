@@ -28,6 +28,8 @@ pub struct Facts {
     /// Timers whose PRE or ACC something but the timer instructions writes: file and element; `None` is
     /// the whole file.
     timers_written: BTreeSet<(u16, Option<u16>)>,
+    /// How many timer instructions each timer has.
+    timers: BTreeMap<(u16, u16), usize>,
 }
 
 impl Facts {
@@ -50,7 +52,15 @@ impl Facts {
     /// Notes timers whose words an instruction writes.
     fn timer_writes(&mut self, instruction: &Instruction) {
         let name = instruction.mnemonic.name().unwrap_or_default();
-        if matches!(name, "TON" | "TOF" | "RTO" | "RES") {
+        if matches!(name, "TON" | "TOF" | "RTO") {
+            let address = instruction.operands.first().and_then(Operand::address);
+            let element = address.and_then(|address| Some((address.file.number()?, address.element.number()?)));
+            if let Some(element) = element {
+                *self.timers.entry(element).or_default() += 1;
+            }
+            return;
+        }
+        if name == "RES" {
             return;
         }
         let form = instr::by_mnemonic(name).and_then(|known| known.forms.first());
@@ -64,6 +74,11 @@ impl Facts {
             let whole = address.indexed || address.word.is_none();
             self.timers_written.insert((file, address.element.number().filter(|_| !whole)));
         }
+    }
+
+    /// How many timer instructions this timer has.
+    pub fn timer_instructions(&self, file: u16, element: u16) -> usize {
+        self.timers.get(&(file, element)).copied().unwrap_or(0)
     }
 
     /// Something but timer instructions writes words of this timer.

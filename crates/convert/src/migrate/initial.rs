@@ -87,7 +87,7 @@ fn words_of(image: &Image, span: &Span) -> Option<Vec<u16>> {
         other => image.data_file(other, span.file)?,
     };
     let first = match span.file_type.has_slots() {
-        true => image.io.word_index(&span.address(0)?).map(usize::from)?,
+        true => usize::try_from(span.stored?).ok()?,
         false => usize::try_from(span.first_word).ok()?,
     };
     let end = first.checked_add(usize::try_from(span.words).ok()?)?;

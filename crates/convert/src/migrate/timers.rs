@@ -33,6 +33,8 @@ struct Timer {
     /// On until the timer is executed for the first time after entering RUN.
     fresh: String,
     base: u32,
+    /// No part of a tick is ever left: 1 ms, and no other instruction with another base.
+    whole: bool,
 }
 
 /// The register with the part of a tick a timer has gathered, in milliseconds.
@@ -51,7 +53,8 @@ impl Timer {
         let base = time_base(context, instruction)?;
         let elapsed;
         let fresh;
-        if context.conditional {
+        // Two instructions on one timer: the second finds no time gone.
+        if context.conditional || parts.instructions(context) > 1 {
             let now = context.now();
             let last = nickname(&parts, "at");
             let last = context.helper(Block::D, &last, &format!("{}: time of its last execution", parts.name()));
@@ -82,13 +85,14 @@ impl Timer {
             elapsed,
             fresh,
             base: base.milliseconds(),
+            whole: base == TimeBase::Millisecond && parts.instructions(context) == 1,
         })
     }
 
     /// With power: adds the elapsed ticks to ACC, at most up to PRE.
     fn count(&self, e: &mut Emitter) {
         let Timer { pre, acc, part, elapsed, base, .. } = self;
-        if *base == 1 {
+        if self.whole {
             e.math(acc, &format!("IF({acc} + {elapsed} > {pre}, {pre}, {acc} + {elapsed})"));
             return;
         }
@@ -100,7 +104,7 @@ impl Timer {
     /// With power: ACC and the part of a tick become 0.
     fn clear(&self, e: &mut Emitter) {
         e.mov("0", &self.acc);
-        if self.base != 1 {
+        if !self.whole {
             e.mov("0", &self.part);
         }
     }
@@ -229,7 +233,7 @@ fn off_delay(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instructi
         e.reset(&t.dn);
     });
     e.unless(|e| {
-        if t.base != 1 {
+        if !t.whole {
             e.when(|e| {
                 e.and_not(&t.dn);
                 e.mov("0", &t.part);

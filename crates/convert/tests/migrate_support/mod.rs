@@ -1,0 +1,185 @@
+//! Runs a program and what it was migrated to side by side, in scans of the same inputs and time, and
+//! compares all data after every scan.
+#![allow(dead_code)] // every test file uses its own part
+
+use std::time::Duration;
+
+use convert::migrate::{self, Migration, Options};
+use domore::engine;
+use ladder::{Address, DataFile, Family, FileType, Image, Value};
+
+/// Data files of every test program: type, number, elements.
+pub(crate) const FILES: [(FileType, u16, u16); 10] = [
+    (FileType::O, 0, 2),
+    (FileType::I, 1, 2),
+    (FileType::S, 2, 66),
+    (FileType::B, 3, 8),
+    (FileType::T, 4, 6),
+    (FileType::C, 5, 4),
+    (FileType::R, 6, 4),
+    (FileType::N, 7, 24),
+    (FileType::F, 8, 6),
+    (FileType::B, 10, 8),
+];
+
+/// An image of these rungs with the data files above.
+pub(crate) fn image(family: Family, files: &[(u16, &str)]) -> Image {
+    let files = files
+        .iter()
+        .map(|(number, text)| {
+            let rungs = convert::slc::rung::parse_rungs(text, Some(family));
+            (*number, rungs.unwrap_or_else(|errors| panic!("{errors:?}\n{text}")))
+        })
+        .collect();
+    let mut image = sim::inline_image(family, files);
+    image.data_files =
+        FILES.iter().map(|(file_type, number, elements)| DataFile::new(*file_type, *number, *elements)).collect();
+    image
+}
+
+/// A word of the data table and the operand that stands for it.
+struct Pair {
+    slc: Address,
+    domore: engine::Handle,
+    text: String,
+    kind: FileType,
+}
+
+/// Both machines.
+pub(crate) struct Both {
+    pub(crate) slc: sim::Machine,
+    pub(crate) domore: engine::Machine,
+    pub(crate) migration: Migration,
+    inputs: Vec<Pair>,
+    pairs: Vec<Pair>,
+    scans: usize,
+}
+
+impl Both {
+    pub(crate) fn new(image: &Image, options: &Options) -> Both {
+        let migration = migrate::migrate(image, &[], options).expect("it migrates");
+        let text = domore::text::write(&migration.project);
+        let reading = domore::text::read(&text).expect("the text is read back");
+        assert!(reading.diagnostics.is_empty(), "{:?}\n{text}", reading.diagnostics);
+        let program = engine::Program::compile(&reading.project, &engine::Options::default())
+            .unwrap_or_else(|refusals| panic!("{refusals:#?}\n{text}"));
+        let domore = engine::Machine::new(program);
+        let program = sim::Program::compile(image, &sim::Options::default()).expect("the original compiles");
+        let slc = sim::Machine::new(program);
+        let (mut inputs, mut pairs) = (Vec::new(), Vec::new());
+        for span in migration.places.spans() {
+            let step = if matches!(span.at.block.name(), "D" | "R") { 2 } else { 1 };
+            for index in (0..span.words).step_by(step) {
+                let address = span.address(index).expect("address");
+                let places = &migration.places;
+                let text = match step {
+                    2 => places.element(span.file_type, span.file, span.first_word + index).map(|e| e.to_string()),
+                    _ => places.word(span.file_type, span.file, span.first_word + index),
+                };
+                let text = text.expect("a place");
+                let domore = domore.handle(&text).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+                let pair = Pair { slc: address, domore, text, kind: span.file_type };
+                match span.file_type {
+                    FileType::I => inputs.push(pair),
+                    // Of the status file what the program can see.
+                    FileType::S if !matches!(index, 0 | 4 | 5 | 13 | 14 | 24) => {}
+                    _ => pairs.push(pair),
+                }
+            }
+        }
+        Both { slc, domore, migration, inputs, pairs, scans: 0 }
+    }
+
+    pub(crate) fn enter_run(&mut self) {
+        self.slc.enter_run();
+        self.domore.enter_run();
+        self.scans = 0;
+    }
+
+    pub(crate) fn stop(&mut self) {
+        self.slc.enter_program();
+        self.domore.enter_program();
+    }
+
+    /// Writes an input word on both sides.
+    pub(crate) fn input(&mut self, word: usize, value: u16) {
+        let Some(pair) = self.inputs.get(word) else { return };
+        self.slc.set(&pair.slc, &Value::Word(value as i16)).expect("an input");
+        self.domore.set_number(pair.domore, domore::memory::Num::Int(i64::from(value as i16)));
+    }
+
+    /// Writes a word of the data table on both sides.
+    pub(crate) fn set(&mut self, address: &str, value: i16) {
+        let address = Address::parse(address).expect("address");
+        self.slc.set(&address, &Value::Word(value)).expect("an address");
+        let (t, f, w) = self.migration.places.word_of(&address).expect("a place");
+        let text = self.migration.places.word(t, f, w).expect("a word");
+        self.domore.set(&text, &engine::Value::Integer(value.into())).expect("an element");
+    }
+
+    /// One scan on both sides; the first difference as text.
+    pub(crate) fn scan(&mut self, dt: Duration) -> Option<String> {
+        let dt = if self.scans == 0 { Duration::ZERO } else { dt };
+        self.scans += 1;
+        self.slc.scan(dt);
+        self.domore.scan(dt);
+        self.difference()
+    }
+
+    pub(crate) fn running(&self) -> bool {
+        self.slc.is_executing()
+    }
+
+    pub(crate) fn difference(&self) -> Option<String> {
+        // A stopped original keeps its data; what its outputs show is zero on both sides.
+        if !self.slc.is_executing() {
+            return None;
+        }
+        for pair in &self.pairs {
+            // S:4 and the clock only where the program asks for them.
+            if pair.kind == FileType::S && pair.slc.element.number() == Some(4) && !self.reads_clock() {
+                continue;
+            }
+            let slc = self.slc.get(&pair.slc).expect("a place");
+            let domore = self.domore.value(pair.domore);
+            let equal = match (&slc, &domore) {
+                (Value::Word(a), engine::Value::Integer(b)) => i64::from(*a) == *b,
+                (Value::Long(a), engine::Value::Integer(b)) => i64::from(*a) == *b,
+                (Value::Float(a), engine::Value::Real(b)) => a.to_bits() == b.to_bits() || a == b,
+                _ => false,
+            };
+            if !equal {
+                return Some(format!("scan {}: {} is {slc:?}, {} is {domore:?}", self.scans, pair.slc, pair.text));
+            }
+        }
+        None
+    }
+
+    fn reads_clock(&self) -> bool {
+        self.migration.rungs.iter().any(|rung| rung.original.contains("S:4"))
+    }
+
+    pub(crate) fn text(&self) -> String {
+        domore::text::write(&self.migration.project)
+    }
+}
+
+/// xorshift64*: the same numbers on every machine.
+pub(crate) struct Dice(pub(crate) u64);
+
+impl Dice {
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
+    }
+
+    pub(crate) fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit.max(1)
+    }
+
+    pub(crate) fn pick<'a>(&mut self, list: &[&'a str]) -> &'a str {
+        list.get(self.below(list.len() as u64) as usize).copied().unwrap_or("")
+    }
+}
