@@ -28,6 +28,8 @@ const DOCUMENTS: &[(&str, &str)] = &[
     ("AI", "A.I. Series Software Reference, 9323-S5500D"),
     ("UM011", "SLC 500 Modular Hardware Manual, 1747-UM011G"),
     ("PLC5", "PLC-5 quick reference: a relative of these processors"),
+    ("DMD", "Do-more Designer help: the topic of that number"),
+    ("DMX", "exports that Do-more Designer wrote: operands, legs and use of the instruction"),
     ("PSU", "a university's course notes on sequencers"),
 ];
 
@@ -73,8 +75,19 @@ fn suite() -> Vec<(String, PathBuf, Scenario)> {
         paths
     };
     let mut suite = Vec::new();
-    for folder in list(&root().join("conformance")).into_iter().filter(|path| path.is_dir()) {
-        let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
+    let folders = |path: &Path| list(path).into_iter().filter(|path| path.is_dir()).collect::<Vec<_>>();
+    let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
+    let mut subjects = Vec::new();
+    for folder in folders(&root().join("conformance")) {
+        // The other dialect has a folder of its own with one per subject.
+        let inner = folders(&folder).into_iter().map(|inner| (format!("{}/{}", name(&folder), name(&inner)), inner));
+        let before = subjects.len();
+        subjects.extend(inner);
+        if subjects.len() == before {
+            subjects.push((name(&folder), folder));
+        }
+    }
+    for (name, folder) in subjects {
         for path in list(&folder) {
             let text = std::fs::read_to_string(&path).expect("a readable file");
             let scenario = Scenario::parse(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -170,6 +183,12 @@ fn the_page_is_up_to_date() {
     assert!(stored == page, "docs/conformance.md is stale: run this test with RUNGS_BLESS=1");
 }
 
+/// An instruction in capitals, any other subject as it is.
+fn do_more(name: &str) -> String {
+    let known = |part: &str| domore::instruction::by_mnemonic(part).is_some();
+    if name.split('-').all(known) { name.to_uppercase().replace('-', ", ") } else { name.to_owned() }
+}
+
 fn page(suite: &[(String, PathBuf, Scenario)]) -> String {
     let mut text = String::from(
         "<!-- Written by `crates/cli/tests/conformance.rs`; run it with RUNGS_BLESS=1. -->\n\n# Conformance\n\n\
@@ -193,7 +212,11 @@ fn page(suite: &[(String, PathBuf, Scenario)]) -> String {
     let _ = writeln!(text, "| subject | cases | {names} | pages |\n|---|---|---|---|---|---|---|---|");
     let cells = |cases: &[&Scenario]| GRADES.map(|row| count(cases, row.0).to_string()).join(" | ");
     for (name, cases) in &groups {
-        let subject = if name.len() <= 3 { name.to_uppercase() } else { (*name).to_owned() };
+        let subject = match name.strip_prefix("domore/") {
+            Some(name) => format!("Do-more: {}", do_more(name)),
+            None if name.len() <= 3 => name.to_uppercase(),
+            None => (*name).to_owned(),
+        };
         let sources = cases.iter().flat_map(|case| &case.source).filter(|source| grade(source) == Some(Grade::Page));
         // What stands behind a colon or in parentheses explains; the page stands before it.
         let pages: BTreeSet<&str> =

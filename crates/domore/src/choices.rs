@@ -110,6 +110,54 @@ pub const LIST: &[Row] = &[
     },
 ];
 
+/// Readings without a switch: what is not described and how it is taken.
+pub const FIXED: &[(&str, &str)] = &[
+    ("an up timer behind its preset", ".Acc goes on to 2147483647 and stays there"),
+    ("a down timer behind 0", ".Acc stays 0"),
+    ("counters at the limits of 32 bits", ".Acc stays at the limit"),
+    ("both count legs of UDC or UDCG rise in one scan", "they cancel out"),
+    ("a leg of a counter during a reset", "its edge memory follows it: no count when the reset ends"),
+    ("the first enabled scan of a timer", "no time is charged; a TMRDOWN starts from its preset"),
+    ("a timer that was not executed for some scans and stayed enabled", "it gains the time that has passed"),
+    ("a negative preset", "an up timer is done at once, a down timer too"),
+    (".EN of a timer", "its first leg; .DN is another name of .Done"),
+    ("OFFDTMR with the input ON", ".Acc is the delay, .Reset is ON"),
+    ("OFFDTMR reset by RSTT or termination", ".Acc 0, output OFF"),
+    ("the order of programs and tasks", "tasks that are due, then programs as they stand in the text"),
+    ("a program that is restarted", "one termination scan, then from its start"),
+    ("SUSPEND", "the program pauses without termination; RUN goes on with it"),
+    ("coils of a stage that stops", "OFF, as those of a program"),
+    ("coils and timers of a subroutine that is not called", "they hold"),
+    ("a differential contact", "compares with the state when it was executed last"),
+    ("several OROUT of a bit", "the first of a scan writes it, the others only turn it ON"),
+    ("what stands behind a box with several legs", "its top leg is the power flow"),
+    ("the square waves ST3 to ST5", "OFF in the first half of their period"),
+    ("the clock", "1 January 2000 when the machine is made, moved by simulated time; Sunday is day 0"),
+    ("retention", "blocks with -1 in their fifth column lose their content at power loss, all others keep it"),
+    ("IF in MATH", "only the side that is taken is computed"),
+    ("an index or a count that leads out of its block", "nothing is written"),
+    ("V against N in a comparison", "by value: 40000 is greater than -1"),
+];
+
+/// The page of readings in Markdown: what `docs/domore-choices.md` holds.
+pub fn markdown() -> String {
+    let mut page = String::from(
+        "<!-- Written from the lists in `crates/domore/src/choices.rs` by a test beside it; run it with RUNGS_BLESS=1. \
+         -->\n\n# Readings of Do-more where documentation ends\n\n\
+         What the vendor's help and Designer's exports say is followed; each row below is a question they leave open.\n\n\
+         ## With a switch\n\n`--choice NAME` takes the other reading.\n\n\
+         | name | default | switched | reason |\n|---|---|---|---|\n",
+    );
+    for row in LIST {
+        page.push_str(&format!("| `{}` | {} | {} | {} |\n", row.name, row.default, row.switched, row.reason));
+    }
+    page.push_str("\n## Without a switch\n\n| question | reading |\n|---|---|\n");
+    for (question, reading) in FIXED {
+        page.push_str(&format!("| {question} | {reading} |\n"));
+    }
+    page
+}
+
 impl Choices {
     /// Whether the switch is on.
     pub fn has(self, choice: Choice) -> bool {
