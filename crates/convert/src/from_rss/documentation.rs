@@ -189,4 +189,31 @@ mod tests {
         assert_eq!(target("PFILE:00012"), Target::ProgramFile(12));
         assert_eq!(target(""), Target::Unassigned);
     }
+
+    #[test]
+    fn comments_that_share_a_number_are_all_kept() {
+        let stored = |id, text: &'static str, key: &'static str| rss::database::Comment {
+            id,
+            text: Text::from_bytes(text.as_bytes()),
+            title: Text::default(),
+            key: Text::from_bytes(key.as_bytes()),
+        };
+        let database = Database {
+            comments: vec![
+                stored(1, "first", "RUNG000002-000000"),
+                stored(1, "second", "RUNG000002-000001"),
+                stored(2, "far", "RUNG070000-000003"),
+            ],
+            ..Database::default()
+        };
+        let mut diagnostics = Vec::new();
+        let mut comments = Comments::new(&database, "MEM", &mut diagnostics);
+        assert_eq!(comments.shown(1).map(|comment| comment.text).as_deref(), Some("first"));
+        let detached: Vec<_> = comments.detached().into_iter().map(|comment| (comment.text, comment.owner)).collect();
+        let far = CommentOwner::Address(Target::Other("RUNG070000-000003".to_owned()));
+        assert_eq!(detached, [("second".to_owned(), CommentOwner::Rung { file: 2, rung: 1 }), ("far".to_owned(), far)]);
+        let places: Vec<&str> = diagnostics.iter().map(|diagnostic| diagnostic.place.as_str()).collect();
+        assert_eq!(places, ["MEM, in rung comment 1", "MEM, in rung comment 2"]);
+        assert!(diagnostics.iter().all(|diagnostic| diagnostic.severity == Severity::Warning));
+    }
 }
