@@ -326,6 +326,11 @@ impl<'a> CrossReference<'a> {
         self.image.value_at(address)
     }
 
+    /// The program.
+    pub fn image(&self) -> &'a Image {
+        self.image
+    }
+
     /// The documentation it resolves symbols with.
     pub fn documentation(&self) -> &'a Documentation {
         self.documentation

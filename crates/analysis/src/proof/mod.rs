@@ -1,0 +1,269 @@
+//! Equivalence runs: two programs side by side, scan by scan, with the same inputs and the same time.
+//!
+//! [`prove_slc`] compares two SLC programs, [`prove_domore`] an SLC program with the Do-more program made of it.
+//! Inputs are random, from a seed, and directed: edges of every input, values around every comparison,
+//! waits past every preset, leaving and entering run. What the run has not seen yet of the original (each
+//! contact both ways, each output with and without power, each timer done, each comparison at its boundary)
+//! decides where it goes next. After every scan all data that the map places on both sides must be equal.
+//!
+//! A run that finds nothing proves nothing beyond what it covered, and says what that was. What is not
+//! mapped, not converted or never reached is listed and never counts as equal.
+
+mod campaign;
+mod goals;
+mod inputs;
+mod minimize;
+mod pairs;
+mod random;
+mod report;
+mod scenario;
+mod side;
+mod solve;
+mod tape;
+mod taint;
+
+use std::collections::BTreeSet;
+
+use ladder::{Address, FileType, Image, Operand};
+
+use crate::CrossReference;
+use campaign::{Both, Campaign};
+use goals::Goals;
+use inputs::Inputs;
+use minimize::Player;
+use pairs::Pairs;
+use scenario::Preset;
+use solve::Solver;
+
+pub use campaign::Difference;
+pub use goals::{Goal, GoalKind};
+pub use pairs::{Mapping, Mismatch};
+pub use report::{Coverage, Report, RungCoverage, Verdict};
+pub use scenario::{Counterexample, Named};
+pub use side::{DoMore, Kind, Side, Slc};
+
+/// Settings of a proof run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Scans of both sides.
+    pub scans: u64,
+    /// Where the random sequence starts. The same seed gives the same run on any machine.
+    pub seed: u64,
+    /// Look for the shortest way to a difference that was found.
+    pub minimize: bool,
+    /// How scenarios name the original.
+    pub original: Named,
+    /// How scenarios name the other program.
+    pub other: Named,
+    /// Readings where documentation of the original ends.
+    pub choices: sim::Choices,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            scans: 100_000,
+            seed: 1,
+            minimize: true,
+            original: Named::default(),
+            other: Named { family: Some("do-more".to_owned()), ..Named::default() },
+            choices: sim::Choices::default(),
+        }
+    }
+}
+
+/// What became of a rung of the original.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RungFate {
+    /// Program file.
+    pub file: u16,
+    /// Rung, from 0.
+    pub rung: u32,
+    /// It was left to a person, for this reason; the other program does nothing in its place.
+    pub person: Option<String>,
+    /// It behaves the same under these conditions only.
+    pub conditions: Vec<String>,
+}
+
+/// Compares two versions of an SLC 500 or MicroLogix program; without a map every address means itself.
+pub fn prove_slc(original: &Image, other: &Image, map: Option<&[Mapping]>, options: &Options) -> Report {
+    let sides = (slc(original, "original", options), slc(other, "other program", options));
+    let (a, b) = match sides {
+        (Ok(a), Ok(b)) => (a, b),
+        (a, b) => return Report::impossible(a.err().into_iter().chain(b.err()).flatten().collect(), options),
+    };
+    let identity;
+    let map = match map {
+        Some(map) => map,
+        None => {
+            identity = Mapping::identity(original);
+            &identity
+        }
+    };
+    let approximations = approximations(b.0.iter().map(ToString::to_string));
+    prove(original, a, b.1, approximations, map, None, options)
+}
+
+/// Compares an SLC 500 or MicroLogix program with a Do-more program. `fates` is what the migration says of
+/// each rung of the original; without it a rung that went missing can be seen in behaviour only.
+pub fn prove_domore(
+    original: &Image,
+    other: &domore::Project,
+    map: &[Mapping],
+    fates: Option<&[RungFate]>,
+    options: &Options,
+) -> Report {
+    let program = domore::engine::Program::compile(other, &domore::engine::Options::default());
+    let program = program.map_err(|refusals| {
+        refusals.iter().map(|refusal| format!("the other program cannot be run: {refusal}")).collect::<Vec<_>>()
+    });
+    let (a, program) = match (slc(original, "original", options), program) {
+        (Ok(a), Ok(program)) => (a, program),
+        (a, b) => return Report::impossible(a.err().into_iter().chain(b.err()).flatten().collect(), options),
+    };
+    let approximations = approximations(program.approximations().iter().map(ToString::to_string));
+    prove(original, a, DoMore::new(program), approximations, map, fates, options)
+}
+
+type Compiled = (Vec<sim::Approximation>, Slc);
+
+fn slc(image: &Image, which: &str, options: &Options) -> Result<Compiled, Vec<String>> {
+    let settings = sim::Options { choices: options.choices, ..sim::Options::default() };
+    let program = sim::Program::compile(image, &settings).map_err(|refusals| {
+        refusals.iter().map(|refusal| format!("the {which} cannot be run: {refusal}")).collect::<Vec<_>>()
+    })?;
+    let approximations = program.approximations().to_vec();
+    Ok((approximations, Slc { machine: sim::Machine::new(program) }))
+}
+
+/// Each once.
+fn approximations(all: impl Iterator<Item = String>) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    all.filter(|text| seen.insert(text.clone())).collect()
+}
+
+fn prove<B: Side>(
+    image: &Image,
+    (own, a): Compiled,
+    b: B,
+    others: Vec<String>,
+    map: &[Mapping],
+    fates: Option<&[RungFate]>,
+    options: &Options,
+) -> Report {
+    let xref = CrossReference::build(image, &image.documentation);
+    let mut report = Report::empty(options);
+    report.approximations = [approximations(own.iter().map(ToString::to_string)), others];
+    let persons = rungs(image, fates, &mut report);
+    let tainted = taint::tainted(image, &a, &persons).unwrap_or_else(|| {
+        report.incomparable.push("which rungs run at all depends on rungs that were left to a person".to_owned());
+        (0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX)).collect()
+    });
+    report.not_compared = tainted.len();
+    let pairs = Pairs::new(image, &xref, &a, &b, map, &tainted);
+    let inputs = Inputs::new(image, &xref, &a, &b, &pairs);
+    report.take_map(&pairs, &inputs.left_out);
+    if pairs.compared() == 0 {
+        report.incomparable.push("no data of the two programs can be compared".to_owned());
+        return report;
+    }
+    let mut both = Both { a, b };
+    both.a.machine.enable_forces(false);
+    let presets = start(&mut both, &inputs, &pairs);
+    let goals = Goals::new(image, &xref, &both.a);
+    let solver = Solver::new(image, &both.a, inputs.all.iter().map(|input| (input.at, input.kind)));
+    let base = Both { a: both.a.fork(), b: both.b.fork() };
+    let limits = (options.seed, options.scans);
+    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, &solver, timers(image, &base.a), limits);
+    campaign.run();
+    report.take_run(&campaign, inputs.all.len());
+    if let Some((difference, tape)) = campaign.found.take() {
+        let scratch = Both { a: base.a.fork(), b: base.b.fork() };
+        let mut player = Player { base: &base, scratch, pairs: &pairs, inputs: &inputs, spent: 0 };
+        let shortest = if options.minimize { player.shortest(&tape) } else { None };
+        let (tape, difference) = shortest.unwrap_or((tape, difference));
+        let named = (&options.original, &options.other);
+        let example = scenario::write(&tape, &difference, &inputs, &presets, named, options.seed);
+        report.found = Some((difference, example));
+    }
+    report
+}
+
+/// Checks that every rung has a fate; answers those left to a person.
+fn rungs(image: &Image, fates: Option<&[RungFate]>, report: &mut Report) -> BTreeSet<(u16, u32)> {
+    let Some(fates) = fates else { return BTreeSet::new() };
+    let known: BTreeSet<(u16, u32)> = fates.iter().map(|fate| (fate.file, fate.rung)).collect();
+    for file in image.ladder_files() {
+        for (number, rung) in (0..).zip(&file.rungs) {
+            if !rung.is_end() && !known.contains(&(file.number, number)) {
+                report.missing_rungs.push(format!("{}:{number}", file.number));
+            }
+        }
+    }
+    for fate in fates {
+        if let Some(why) = &fate.person {
+            report.persons.push(format!("{}:{}: {why}", fate.file, fate.rung));
+        }
+        report.conditions.extend(fate.conditions.iter().map(|why| format!("{}:{}: {why}", fate.file, fate.rung)));
+    }
+    fates.iter().filter(|fate| fate.person.is_some()).map(|fate| (fate.file, fate.rung)).collect()
+}
+
+/// Puts both sides where they begin alike: terminals off, clocks at one time. Answers what scenarios must
+/// set for that.
+fn start<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs) -> Vec<Preset> {
+    let mut presets = Vec::new();
+    for (at, original, other) in pairs.input_words() {
+        if both.a.word(at) != 0
+            && let (Ok(own), Ok(target)) = (both.a.target(&original), both.b.target(&other))
+        {
+            both.a.write(&own, 0);
+            both.b.write(&target, 0);
+            presets.push(Preset { original, other, kind: Kind::Word, value: 0 });
+        }
+    }
+    // Fields the program reads, and the whole date where it reads one of them.
+    let clock = |address: &Address| matches!(address.file_type, FileType::S | FileType::RTC);
+    if inputs.all.iter().any(|input| clock(&input.a.0)) {
+        presets.extend(date(both, inputs, pairs));
+    }
+    presets
+}
+
+/// A Monday before noon.
+const DATE: [(&str, u16, u16, u32); 6] =
+    [("Year", 37, 0, 2024), ("Month", 38, 1, 4), ("Day", 39, 2, 15), ("Hour", 40, 3, 11), ("Minute", 41, 4, 59), ("Second", 42, 5, 30)];
+
+fn date<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs) -> Vec<Preset> {
+    let rtc = inputs.all.iter().any(|input| input.a.0.file_type == FileType::RTC);
+    let mut presets = Vec::new();
+    for (field, status, word, value) in DATE {
+        let address = match rtc {
+            true => Address::element(FileType::RTC, 0, 0).with_word(word),
+            false => Address::element(FileType::S, 2, status),
+        };
+        let original = address.to_string();
+        let Some(other) = pairs.clock(field, &original) else { continue };
+        if let (Ok(own), Ok(target)) = (both.a.target(&original), both.b.target(&other)) {
+            both.a.write(&own, value);
+            both.b.write(&target, value);
+            presets.push(Preset { original, other, kind: Kind::Word, value });
+        }
+    }
+    presets
+}
+
+/// Timers the program runs: place of PRE and milliseconds per count.
+fn timers(image: &Image, a: &Slc) -> Vec<(u32, u32)> {
+    let mut all = BTreeSet::new();
+    for (_, instruction) in crate::instructions(image) {
+        if matches!(instruction.mnemonic.name(), Some("TON" | "TOF" | "RTO"))
+            && let Some(address) = instruction.operands.first().and_then(Operand::address).filter(|it| it.is_direct())
+            && let Ok((at, _)) = a.place(&address.to_string())
+        {
+            let base = ladder::TimeBase::from_control(a.word(at)).map_or(10, ladder::TimeBase::milliseconds);
+            all.insert((at + 16, base));
+        }
+    }
+    all.into_iter().collect()
+}
