@@ -22,7 +22,7 @@ pub const MAX_LINES: usize = 1_000_000;
 pub struct Reading {
     /// Everything in the text.
     pub project: Project,
-    /// What deviates, in the order of the text as far as it has one.
+    /// What deviates, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -180,6 +180,7 @@ impl<'a> Reader<'a> {
         let project = Project { format: self.format, parts: self.parts, tail };
         let mut diagnostics = self.diagnostics;
         diagnostics.extend(stack::check_project(&project));
+        diagnostics.sort_by_key(|found| (found.line, found.column));
         Reading { project, diagnostics }
     }
 
@@ -397,7 +398,8 @@ impl<'a> Reader<'a> {
         let words = split(line.text);
         let first = words.words.first().copied().unwrap_or_default();
         let shaped = is_mnemonic(first);
-        if !shaped && self.block.is_none() {
+        let upper = shaped && !first.bytes().any(|byte| byte.is_ascii_lowercase());
+        if self.block.is_none() && !upper && instruction::by_mnemonic(first).is_none() {
             self.unread(line, Problem::UnknownLine);
             return;
         }
