@@ -7,18 +7,11 @@
 
 use std::fmt;
 
+pub use crate::program::Radix;
+pub use crate::text::{quote, unquote};
+
 /// Longest operand that is read: the longest text of a generated table stays far below.
 const LONGEST: usize = 65_536;
-
-/// How the elements of a block are numbered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Radix {
-    /// All blocks but the DirectLOGIC ones.
-    #[default]
-    Decimal,
-    /// `DLX`, `DLY`, `DLC`, `DLV`, and user blocks declared so.
-    Octal,
-}
 
 impl Radix {
     /// The radix of a block in a project that declares nothing else.
@@ -444,25 +437,6 @@ impl fmt::Display for Operand {
             Operand::Quoted(text) => f.write_str(&quote(text)),
         }
     }
-}
-
-/// The text between quotes, doubled ones undone; `None` when a single quote stands inside or none at the end.
-pub fn unquote(text: &str) -> Option<String> {
-    let inside = text.strip_prefix('"')?.strip_suffix('"')?;
-    let mut plain = String::with_capacity(inside.len());
-    let mut quotes = inside.chars();
-    while let Some(c) = quotes.next() {
-        if c == '"' && quotes.next() != Some('"') {
-            return None;
-        }
-        plain.push(c);
-    }
-    Some(plain)
-}
-
-/// The text in quotes, those inside doubled.
-pub fn quote(text: &str) -> String {
-    format!("\"{}\"", text.replace('"', "\"\""))
 }
 
 /// The columns of a table operand: separated by spaces or tabs, a quoted one kept whole and unquoted.

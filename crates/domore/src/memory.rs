@@ -339,11 +339,7 @@ impl Map {
     }
 
     fn declare(&mut self, block: &MemoryBlock) -> Result<(), NameError> {
-        let radix = match block.radix {
-            Some(crate::program::Radix::Octal) => Radix::Octal,
-            Some(crate::program::Radix::Decimal) => Radix::Decimal,
-            None => Radix::of_block(&block.name),
-        };
+        let radix = block.radix.unwrap_or_else(|| Radix::of_block(&block.name));
         let Some(element) = ElementType::from_word(&block.type_word, &block.name) else {
             let code = matches!(block.type_word.as_str(), "PROGRAM" | "<Virtual>" | "INTERRUPT" | "TASK");
             if !code {

@@ -175,9 +175,10 @@ pub struct MemoryBlock {
 }
 
 /// How elements of a memory block are numbered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Radix {
     /// `decimal`.
+    #[default]
     Decimal,
     /// `octal`: the guest memory of DirectLOGIC (`DLX`, `DLV`, ...).
     Octal,
