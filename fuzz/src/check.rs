@@ -203,3 +203,26 @@ pub fn csv(bytes: &[u8]) {
         assert_eq!(settle(&first), first);
     }
 }
+
+/// A text for Do-more Designer, with everything that is done with one.
+pub fn domore_text(bytes: &[u8]) {
+    let Ok(document) = convert::designer::from_bytes(bytes, Source::default()) else { return };
+    let mixed = document.diagnostics.iter().any(|it| it.problem == domore::Problem::MixedLineEnds);
+    let written = convert::designer::to_bytes(&document.project);
+    assert!(mixed || written == bytes, "a text does not come back");
+    let again = convert::designer::from_bytes(&written, Source::default()).expect("what is written reads");
+    assert_eq!(again.project, document.project);
+    let documentation = domore::documentation::Documentation::new(&document.project);
+    let style = render::Style::default();
+    for block in document.project.code_blocks().take(4) {
+        let last = 20.min(block.rungs.len());
+        render::domore::code_block(&mut io::sink(), block, Some(0..=last), &documentation, &style).expect("a sink takes all");
+    }
+    convert::designer::write_json(&document, io::sink()).expect("a sink takes all");
+    if let Ok(xref) = domore::xref::CrossReference::build(&document.project) {
+        let elements: Vec<&str> = xref.elements().take(20).collect();
+        for element in elements {
+            let _ = xref.of_element(element);
+        }
+    }
+}

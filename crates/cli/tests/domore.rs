@@ -1,0 +1,101 @@
+//! The commands on a Do-more project, as a user runs them.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const FILE: &str = "filling_domore/filling.txt";
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
+}
+
+fn rungs(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rungs"))
+        .current_dir(examples())
+        .args(arguments)
+        .output()
+        .expect("the command starts")
+}
+
+fn text(arguments: &[&str]) -> String {
+    let output = rungs(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&text(arguments)).expect("one JSON document")
+}
+
+#[test]
+fn show_draws_its_rungs() {
+    insta::assert_snapshot!("domore_show", text(&["show", FILE]));
+    let one = text(&["show", FILE, "--block", "Fill", "--rung", "3"]);
+    assert!(one.contains("0003") && !one.contains("0002") && !one.contains("0004"), "{one}");
+    let rungs = &json(&["show", "--json", FILE, "--block", "Report"])["code_blocks"][0]["rungs"];
+    assert_eq!(rungs[1]["text"], "RET");
+}
+
+#[test]
+fn info_and_xref_tell_of_it() {
+    insta::assert_snapshot!("domore_info", text(&["info", FILE]));
+    insta::assert_snapshot!("domore_xref", text(&["xref", FILE, "CT0", "Bottle", "D100", "Report"]));
+    let xref = json(&["xref", "--json", FILE, "T1"]);
+    assert_eq!(xref["addresses"][0]["accesses"][0]["operand"], "T1.Acc");
+    assert_eq!(rungs(&["xref", FILE, "Nothing"]).status.code(), Some(1));
+}
+
+#[test]
+fn it_is_written_back_byte_for_byte() {
+    let bytes = std::fs::read(examples().join(FILE)).expect("the example");
+    assert_eq!(rungs(&["export", FILE, "--to", "domore"]).stdout, bytes);
+    let verify = json(&["verify", "--json", FILE]);
+    assert_eq!((&verify["roundtrip"], &verify["balanced"]), (&Value::Bool(true), &verify["rungs"]));
+    assert_eq!(verify["instructions_unknown"], 0);
+}
+
+#[test]
+fn other_tools_get_json_and_tables() {
+    let document = json(&["export", FILE, "--to", "json"]);
+    assert_eq!(document["schema"], "rungs.domore/1");
+    assert_eq!(document["controller"], "DM-SIM");
+    assert_eq!(document["code_blocks"].as_array().map(Vec::len), Some(3));
+    let comment = &document["code_blocks"][1]["rungs"][2]["comment"];
+    assert_eq!(comment["text"], "Bottles in the crate; the counter keeps counting beyond 100%.");
+    let table = text(&["export", FILE, "--to", "csv"]);
+    assert!(table.contains("X0,Start,\"start button\npanel\","), "{table}");
+    assert!(
+        text(&["export", FILE, "--to", "csv", "--table", "xref"]).contains("CT0.Done,Fill,4,STR,read,definite,operand")
+    );
+}
+
+#[test]
+fn what_does_not_fit_says_so() {
+    for (arguments, code, says) in [
+        (vec!["data", FILE], 3, "expected a project of RSLogix 500, found one of Do-more Designer"),
+        (vec!["export", FILE, "--to", "slc"], 2, "no SLC text"),
+        (vec!["export", "motor/motor.RSS", "--to", "domore"], 2, "rungs migrate"),
+        (vec!["show", FILE, "--file", "2"], 1, "--block NAME"),
+        (vec!["show", "motor/motor.RSS", "--block", "Fill"], 1, "--file N"),
+    ] {
+        let output = rungs(&arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+        assert!(message.contains(says), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn unbalanced_rungs_are_a_finding_with_a_place() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("domore_unbalanced");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join("bad.txt");
+    std::fs::write(&file, "PLC DM-SIM\n$PRGRM $Main\n\nSTR X0\nSTR X1\nOUT Y0\n\n$PGMEND $Main\n").expect("a file");
+    let output = rungs(&["show", &file.to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("STR X0; STR X1; OUT Y0"));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("line 6, column 1, $Main rung 1: too many STR instructions"), "{message}");
+}
