@@ -62,6 +62,19 @@ fn run_lasts_until_the_time_has_passed_also_from_the_start() {
 }
 
 #[test]
+fn a_step_can_have_its_own_time_between_scans() {
+    let report = holds(
+        "family = \"slc-5/03\"\nscan = \"10ms\"\nladder = \"XIC B3:0/0 TON T4:0 0.01 100 0\"\n\
+         [[step]]\nset = { \"B3:0/0\" = 1 }\nscan = \"70ms\"\nscans = 2\nexpect = { \"T4:0.ACC\" = 7 }\n\
+         [[step]]\nscans = 1\nexpect = { \"T4:0.ACC\" = 8 }\n\
+         [[step]]\nscan = \"100ms\"\nrun = \"200ms\"\nexpect = { \"T4:0.ACC\" = 28 }\n",
+    );
+    assert_eq!((report.scans, report.time), (5, Duration::from_millis(280)));
+    let zero = "family = \"slc-5/03\"\nladder = \"OTE B3:0/0\"\n[[step]]\nscan = \"0ms\"\n";
+    assert!(sim::scenario::Scenario::parse(zero).is_err_and(|error| error.key == "step[1].scan"));
+}
+
+#[test]
 fn a_step_acts_in_its_documented_order() {
     // mode before set: the coil's bit is cleared by the prescan and then set; edges before scans.
     holds(

@@ -15,7 +15,7 @@
 //! expect = { "T4:0/EN" = 1, "T4:0.ACC" = 0 }
 //! ```
 //!
-//! The order inside a step is `mode`, `set`, `edges`, then `scans` or `run`, then `fault` and `expect`.
+//! A step can have a `scan` of its own. The order inside a step is `mode`, `set`, `edges`, then `scans` or `run`, then `fault` and `expect`.
 //! A step without `edges`, `scans` and `run` scans nothing. What the first step sets is there when the
 //! processor enters run, and is written once more behind the prescan: it is the state the test starts from.
 //! So is what a later step with `mode` sets; its timers alone stay as the change of mode leaves them.
@@ -93,6 +93,8 @@ pub struct Step {
     pub note: Option<String>,
     /// Leave run and enter it again before everything else.
     pub program_run: bool,
+    /// Simulated time from one scan to the next in this step, where it is not the scenario's.
+    pub scan: Option<Duration>,
     /// Values written before scanning, in the order written.
     pub set: Vec<Assignment>,
     /// Pairs of a scan with the bit 0 and a scan with the bit 1.

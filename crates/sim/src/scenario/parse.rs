@@ -20,7 +20,7 @@ const MOST_SCANS: u64 = 10_000_000;
 const MOST_IN_ALL: u64 = 100_000_000;
 
 const TOP: &[&str] = &["name", "source", "note", "program", "ladder", "family", "scan", "step"];
-const STEP: &[&str] = &["note", "mode", "set", "edges", "scans", "run", "fault", "expect"];
+const STEP: &[&str] = &["note", "mode", "scan", "set", "edges", "scans", "run", "fault", "expect"];
 
 type Result<T> = std::result::Result<T, ScenarioError>;
 type Value<'a> = Spanned<DeValue<'a>>;
@@ -238,6 +238,13 @@ impl Reader<'_> {
                 _ => return Err(self.expected(mode, &key("mode"), "\"program-run\"")),
             },
         };
+        let own = table.get("scan").map(|value| self.duration(value, &key("scan"))).transpose()?;
+        if own.is_some_and(|own| own.is_zero())
+            && let Some(value) = table.get("scan")
+        {
+            return Err(self.expected(value, &key("scan"), "a time above 0"));
+        }
+        let scan = own.unwrap_or(scan);
         let length = match (table.get("scans"), table.get("run")) {
             (None, None) => Length::None,
             (Some(scans), None) => Length::Scans(self.whole(scans, &key("scans"), 0)?),
@@ -254,6 +261,7 @@ impl Reader<'_> {
             line: self.line(&value.span()),
             note: self.optional(table, &path, "note")?,
             program_run,
+            scan: own,
             set: self.assignments(table.get("set"), &key("set"), target)?,
             edges: table.get("edges").map(|value| self.edges(value, &key("edges"), target)).transpose()?,
             length,
@@ -337,6 +345,7 @@ impl Reader<'_> {
 
 /// Scans a step asks for; each part is bounded already.
 fn scans_of(step: &Step, scan: Duration) -> u64 {
+    let scan = step.scan.unwrap_or(scan);
     let length = match step.length {
         Length::None => 0,
         Length::Scans(count) => count,

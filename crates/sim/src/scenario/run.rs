@@ -330,7 +330,7 @@ impl Player<'_> {
     }
 
     fn scan(&mut self, step: &Step) -> Result<(), RunError> {
-        let dt = if std::mem::take(&mut self.entered) { Duration::ZERO } else { self.dt };
+        let dt = if std::mem::take(&mut self.entered) { Duration::ZERO } else { step.scan.unwrap_or(self.dt) };
         self.machine.scan(dt);
         self.scans += 1;
         if self.machine.instructions() > MOST_INSTRUCTIONS {
