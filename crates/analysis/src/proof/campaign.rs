@@ -371,7 +371,14 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     fn carry_out(&mut self, plan: &Plan) {
         for (index, value) in &plan.sets {
-            self.pending.push((u16::try_from(*index).unwrap_or(u16::MAX), *value));
+            let input = self.inputs.all.get(*index).filter(|input| input.bounded);
+            let inside = input.is_none_or(|input| {
+                let (least, most) = (input.values.first(), input.values.last());
+                least.is_none_or(|least| value >= least) && most.is_none_or(|most| value <= most)
+            });
+            if inside {
+                self.pending.push((u16::try_from(*index).unwrap_or(u16::MAX), *value));
+            }
         }
         self.scans_of(1 + plan.sets.len().min(3) as u64);
         if plan.pulses > 0
@@ -407,7 +414,8 @@ impl<'c, B: Side> Campaign<'c, B> {
         }
         let total = milliseconds.saturating_mul(1000);
         let pace = u64::from(self.pace);
-        let coarse = total.saturating_sub(6 * pace) / 24;
+        // Whole milliseconds: the other side may count nothing finer.
+        let coarse = (total.saturating_sub(6 * pace) / 24_000).saturating_mul(1000);
         let coarse = coarse.clamp(pace, LONGEST_PACE.max(pace));
         let mut left = total.saturating_sub(4 * pace);
         let mut scans = 0;
