@@ -25,7 +25,7 @@
 //!
 //! Layout is separate from painting: [`scene()`] gives the items of a rung with their places on a
 //! grid, which any other painter can use; [`rung()`] paints them as text. This crate reads no files and
-//! knows no terminal: width and colour are given in [`Style`].
+//! knows no terminal: width and colour are given in [`Style`]. Rungs of Do-more projects are in [`domore`].
 
 pub mod domore;
 mod face;
