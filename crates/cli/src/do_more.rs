@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use domore::engine::{Machine, Options, Program, Value};
+use domore::engine::{Handle, Machine, Mode, Options, Program, Value};
 use domore::memory::Kind;
 use domore::program::CodeKind;
 use ladder::Severity;
@@ -26,6 +26,14 @@ impl Controller for DoMore {
         self.0.scan(dt);
     }
 
+    fn scans(&self) -> u64 {
+        self.0.scans()
+    }
+
+    fn is_executing(&self) -> bool {
+        self.0.mode() == Mode::Run
+    }
+
     fn now(&self) -> Duration {
         self.0.now()
     }
@@ -39,28 +47,74 @@ impl Controller for DoMore {
     }
 
     fn read(&self, address: &str) -> Result<ladder::Value, String> {
-        let handle = self.0.handle(address).map_err(|error| error.why)?;
-        Ok(match (self.0.value(handle), handle.kind()) {
+        self.0.handle(address).map(|handle| self.value(handle)).map_err(|error| error.why)
+    }
+
+    fn write(&mut self, address: &str, value: &ladder::Value) -> Result<(), String> {
+        self.0.set(address, &plain(value)?).map_err(|error| error.why)
+    }
+}
+
+impl DoMore {
+    /// Writes a value at a place.
+    ///
+    /// # Errors
+    /// It is read-only, or of another sort.
+    pub fn put(&mut self, handle: Handle, value: &ladder::Value) -> Result<(), String> {
+        self.0.set_value(handle, &plain(value)?).map_err(|error| error.why)
+    }
+
+    /// The value at a place.
+    pub fn value(&self, handle: Handle) -> ladder::Value {
+        match (self.0.value(handle), handle.kind()) {
             (Value::Bit(on), _) => ladder::Value::Bit(on),
             (Value::Integer(number), Kind::I16) => ladder::Value::Word(number as i16),
             // Unsigned words and bytes count from 0: they are shown and compared as whole numbers.
             (Value::Integer(number), _) => ladder::Value::Long(number as i32),
             (Value::Real(number), _) => ladder::Value::Float(number),
             (Value::Text(text), _) => ladder::Value::Text(text),
-        })
+        }
     }
+}
 
-    fn write(&mut self, address: &str, value: &ladder::Value) -> Result<(), String> {
-        let value = match value {
-            ladder::Value::Bit(on) => Value::Bit(*on),
-            ladder::Value::Word(word) => Value::Integer((*word).into()),
-            ladder::Value::Long(long) => Value::Integer((*long).into()),
-            ladder::Value::Float(number) => Value::Real(*number),
-            ladder::Value::Text(text) => Value::Text(text.clone()),
-            _ => return Err("no such value in Do-more".to_owned()),
-        };
-        self.0.set(address, &value).map_err(|error| error.why)
+fn plain(value: &ladder::Value) -> Result<Value, String> {
+    Ok(match value {
+        ladder::Value::Bit(on) => Value::Bit(*on),
+        ladder::Value::Word(word) => Value::Integer((*word).into()),
+        ladder::Value::Long(long) => Value::Integer((*long).into()),
+        ladder::Value::Float(number) => Value::Real(*number),
+        ladder::Value::Text(text) => Value::Text(text.clone()),
+        _ => return Err("no such value in Do-more".to_owned()),
+    })
+}
+
+/// What is followed where a person names a timer or counter: its members; else the name itself.
+pub fn members(text: &str) -> Vec<String> {
+    let number = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit());
+    let members: &[&str] = match text.strip_prefix("CT") {
+        Some(rest) if number(rest) => &["Acc", "Done", "DnDone", "Reset", "Zero"],
+        _ if text.strip_prefix('T').is_some_and(number) => &["Acc", "Done", "Timing", "Reset", "Zero"],
+        _ => return vec![text.to_owned()],
+    };
+    members.iter().map(|member| format!("{text}.{member}")).collect()
+}
+
+/// A machine for a Do-more text, with what runs only approximately.
+///
+/// # Errors
+/// A line for everything that keeps it from running.
+pub fn machine_of(text: &str, options: &Options) -> Result<(DoMore, Vec<Approximation>), Vec<String>> {
+    let reading = domore::text::read(text).map_err(|error| vec![error.to_string()])?;
+    let errors = reading.diagnostics.iter().filter(|diagnostic| diagnostic.problem.severity() == Severity::Error);
+    let errors: Vec<String> = errors.map(ToString::to_string).collect();
+    if !errors.is_empty() {
+        return Err(errors);
     }
+    let program = Program::compile(&reading.project, options)
+        .map_err(|refusals| refusals.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    let named = program.approximations().iter();
+    let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
+    Ok((DoMore(Machine::new(program)), approximations))
 }
 
 /// A machine for the text of a program file.

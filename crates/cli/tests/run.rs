@@ -200,3 +200,22 @@ fn approximations_and_refusals_name_their_rung() {
     }
     std::fs::remove_dir_all(&folder).expect("the folder goes");
 }
+
+#[test]
+fn do_more_text_runs_with_the_same_options() {
+    let folder = std::env::temp_dir().join(format!("rungs-run-domore-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("flash.txt");
+    std::fs::write(&path, "$PRGRM $Main\n\nSTR X0\nTMR T0 20\n\nSTR T0.Done\nOUT Y0\n\n$PGMEND $Main\n").expect("a file");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_rungs"))
+        .arg("run")
+        .arg(&path)
+        .args(["--set", "X0=1@10ms", "--watch", "T0.Acc", "--watch", "Y0", "--for", "40ms", "--format", "csv"])
+        .output()
+        .expect("the command runs");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows, ["scan,time_s,T0.Acc,Y0", "1,0,0,0", "2,0.01,0,0", "3,0.02,10,0", "4,0.03,20,1", "5,0.04,30,1"]);
+}

@@ -6,13 +6,14 @@ use std::path::Path;
 use std::time::Duration;
 
 use ladder::{Address, FileType, Image, Project, Value, members_of};
-use sim::scenario::{Literal, parse_duration, value_for};
+use sim::scenario::{Controller, Literal, parse_duration, value_for};
 use sim::{Machine, Options, Program, Recorder, Unsupported};
 
 use super::test::reasons;
 use super::trace::{Column, Row, RungColumn, writer};
 use super::{ImageChoice, open};
 use crate::args::RunArguments;
+use crate::do_more::{self, DoMore};
 use crate::output::{Error, Outcome};
 
 /// More scans than anyone reads; a slip of units otherwise fills a disk.
@@ -24,6 +25,9 @@ pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
     }
     if arguments.scan.is_zero() || arguments.duration.as_nanos() / arguments.scan.as_nanos() > MOST_SCANS {
         return Err(Error::Use(format!("--for and --scan must give from 1 to {MOST_SCANS} scans")));
+    }
+    if let Some(text) = do_more_text(&arguments.program) {
+        return run_do_more(arguments, &text);
     }
     let project = match open(&arguments.program, rss::Mode::Permissive) {
         Ok(project) => project,
@@ -41,7 +45,11 @@ pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
         eprintln!("{}: the project holds no such image", arguments.program.display());
         return Ok(Outcome::Finding);
     };
-    let sets = arguments.set.iter().map(|text| Set::read(&project, text)).collect::<Result<Vec<_>, _>>()?;
+    let sets = arguments
+        .set
+        .iter()
+        .map(|text| Set::read(text, |place| address(&project, place)))
+        .collect::<Result<Vec<_>, _>>()?;
     let rungs = arguments.trace_rung.iter().map(|text| rung(image, text)).collect::<Result<Vec<_>, _>>()?;
     let unsupported = if arguments.accept_unsupported { Unsupported::Fault } else { Unsupported::Refuse };
     let options = Options { choices: arguments.simulation.choices(), unsupported, ..Options::default() };
@@ -59,14 +67,113 @@ pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
         eprintln!("{}: approximate: {line}", arguments.program.display());
     }
     let approximations: Vec<String> = program.approximations().iter().map(ToString::to_string).collect();
-    let mut simulation = Simulation { machine: Machine::new(program), sets, rungs, approximations };
+    let columns = |machine: &Machine| columns(&project, machine, &arguments.watch);
+    follow(arguments, Simulation { machine: Machine::new(program), sets, rungs, approximations }, columns)
+}
+
+/// Enters run and traces it.
+fn follow<M: Followed>(
+    arguments: &RunArguments,
+    mut simulation: Simulation<M>,
+    columns: impl FnOnce(&M) -> Result<Vec<(Column, M::Place)>, Error>,
+) -> Result<Outcome, Error> {
     simulation.write_initial()?;
     simulation.machine.enter_run();
     simulation.write_initial()?;
-    let columns = columns(&project, &simulation.machine, &arguments.watch)?;
+    let columns = columns(&simulation.machine)?;
     match &arguments.output {
         Some(path) => simulation.trace(arguments, columns, create(path, arguments.force)?),
         None => simulation.trace(arguments, columns, std::io::stdout().lock()),
+    }
+}
+
+/// The text of a Do-more program; `None` for anything else, errors included: opening words them.
+fn do_more_text(path: &Path) -> Option<String> {
+    let bytes = super::read_file(path, domore::text::MAX_TEXT).ok()?;
+    let text = convert::slc::decode(&bytes).into_owned();
+    domore::text::is_domore(&text).then_some(text)
+}
+
+fn run_do_more(arguments: &RunArguments, text: &str) -> Result<Outcome, Error> {
+    let name = arguments.program.display();
+    if !arguments.trace_rung.is_empty() {
+        return Err(Error::Use("--trace-rung follows rungs of SLC 500 and MicroLogix programs only".to_owned()));
+    }
+    let unsupported = match arguments.accept_unsupported {
+        true => domore::engine::Unsupported::Stop,
+        false => domore::engine::Unsupported::Refuse,
+    };
+    let options =
+        domore::engine::Options { choices: arguments.simulation.do_more(), unsupported, ..Default::default() };
+    let (machine, approximations) = match do_more::machine_of(text, &options) {
+        Ok(found) => found,
+        Err(why) => {
+            why.iter().for_each(|line| eprintln!("{name}: {line}"));
+            eprintln!("{name}: not run");
+            return Ok(Outcome::Finding);
+        }
+    };
+    for line in reasons(&approximations) {
+        eprintln!("{name}: approximate: {line}");
+    }
+    let find = |text: &str| match machine.0.handle(text) {
+        Ok(handle) => Ok(handle),
+        Err(error) => Err(Error::Use(error.to_string())),
+    };
+    let sets = arguments.set.iter().map(|text| Set::read(text, find)).collect::<Result<Vec<_>, _>>()?;
+    let approximations = approximations.iter().map(ToString::to_string).collect();
+    let columns = |machine: &DoMore| {
+        let mut columns = Vec::new();
+        for text in &arguments.watch {
+            for part in do_more::members(text) {
+                let place =
+                    machine.0.handle(&part).map_err(|why| Error::Use(format!("--watch {text}: {}", why.why)))?;
+                columns.push((Column { heading: part, sample: machine.value(place) }, place));
+            }
+        }
+        Ok(columns)
+    };
+    follow(arguments, Simulation { machine, sets, rungs: Vec::new(), approximations }, columns)
+}
+
+/// A controller whose places are found once, before the first scan.
+trait Followed: Controller {
+    type Place;
+    fn value(&self, place: &Self::Place) -> Option<Value>;
+    fn put(&mut self, place: &Self::Place, value: &Value) -> Result<(), String>;
+    /// A scan of which the recorder keeps what it wants.
+    fn scan_recorded(&mut self, dt: Duration, recorder: &mut Recorder);
+}
+
+impl Followed for Machine {
+    type Place = Address;
+
+    fn value(&self, place: &Address) -> Option<Value> {
+        self.get(place).ok()
+    }
+
+    fn put(&mut self, place: &Address, value: &Value) -> Result<(), String> {
+        self.set(place, value).map_err(|why| why.to_string())
+    }
+
+    fn scan_recorded(&mut self, dt: Duration, recorder: &mut Recorder) {
+        self.scan_traced(dt, recorder);
+    }
+}
+
+impl Followed for DoMore {
+    type Place = domore::engine::Handle;
+
+    fn value(&self, place: &Self::Place) -> Option<Value> {
+        Some(DoMore::value(self, *place))
+    }
+
+    fn put(&mut self, place: &Self::Place, value: &Value) -> Result<(), String> {
+        self.put(*place, value)
+    }
+
+    fn scan_recorded(&mut self, dt: Duration, _: &mut Recorder) {
+        self.0.scan(dt);
     }
 }
 
@@ -89,16 +196,16 @@ fn address(project: &Project, text: &str) -> Result<Address, Error> {
 }
 
 /// A value to write at a time.
-struct Set {
+struct Set<P> {
     text: String,
-    address: Address,
+    place: P,
     literal: Literal,
     /// `None`: before the first scan.
     at: Option<Duration>,
 }
 
-impl Set {
-    fn read(project: &Project, text: &str) -> Result<Set, Error> {
+impl<P> Set<P> {
+    fn read(text: &str, find: impl Fn(&str) -> Result<P, Error>) -> Result<Set<P>, Error> {
         let wrong = |why: &str| Error::Use(format!("--set {text}: {why}"));
         let (place, rest) = text.split_once('=').ok_or_else(|| wrong("expected ADDRESS=VALUE"))?;
         // A string may hold an `@` of its own: what follows the last one is a time only if it reads as one.
@@ -109,7 +216,7 @@ impl Set {
             (_, Ok(float)) => Literal::Float(float),
             _ => Literal::Text(value.to_owned()),
         };
-        Ok(Set { text: text.to_owned(), address: address(project, place.trim())?, literal, at })
+        Ok(Set { text: text.to_owned(), place: find(place.trim())?, literal, at })
     }
 }
 
@@ -130,7 +237,7 @@ fn rung(image: &Image, text: &str) -> Result<RungColumn, Error> {
 }
 
 /// One column per value to follow; elements spread over their members.
-fn columns(project: &Project, machine: &Machine, watch: &[String]) -> Result<Vec<Column>, Error> {
+fn columns(project: &Project, machine: &Machine, watch: &[String]) -> Result<Vec<(Column, Address)>, Error> {
     let mut columns = Vec::new();
     for text in watch {
         let place = address(project, text)?;
@@ -141,7 +248,7 @@ fn columns(project: &Project, machine: &Machine, watch: &[String]) -> Result<Vec
             if matches!(value, Value::Words(_)) {
                 return Err(Error::Use(format!("--watch {text}: name a member of this element")));
             }
-            columns.push(Column { address: place, sample: value });
+            columns.push((Column { heading: place.to_string(), sample: value }, place));
             continue;
         }
         let flagged = matches!(place.file_type, FileType::T | FileType::C | FileType::R);
@@ -151,37 +258,43 @@ fn columns(project: &Project, machine: &Machine, watch: &[String]) -> Result<Vec
                 part = Address { word: None, ..part }.with_bit(bit);
             }
             let sample = machine.get(&part).map_err(missing)?;
-            columns.push(Column { address: part, sample });
+            columns.push((Column { heading: part.to_string(), sample }, part));
         }
     }
     Ok(columns)
 }
 
-struct Simulation {
-    machine: Machine,
-    sets: Vec<Set>,
+struct Simulation<M: Followed> {
+    machine: M,
+    sets: Vec<Set<M::Place>>,
     rungs: Vec<RungColumn>,
     /// What runs only approximately, a line each.
     approximations: Vec<String>,
 }
 
-impl Simulation {
+impl<M: Followed> Simulation<M> {
     fn write_initial(&mut self) -> Result<(), Error> {
         self.write(|set| set.at.is_none())
     }
 
-    fn write(&mut self, due: impl Fn(&Set) -> bool) -> Result<(), Error> {
+    fn write(&mut self, due: impl Fn(&Set<M::Place>) -> bool) -> Result<(), Error> {
         for set in self.sets.iter().filter(|set| due(set)) {
             let wrong = |why: String| Error::Use(format!("--set {}: {why}", set.text));
-            let present = self.machine.get(&set.address).map_err(|why| wrong(why.to_string()))?;
+            let present = self.machine.value(&set.place).ok_or_else(|| wrong("there is no such place".to_owned()))?;
             let value = value_for(&set.literal, &present).map_err(wrong)?;
-            self.machine.set(&set.address, &value).map_err(|why| wrong(why.to_string()))?;
+            self.machine.put(&set.place, &value).map_err(wrong)?;
         }
         Ok(())
     }
 
     /// Scans until the time is over, a row per scan; ends early when the processor stops.
-    fn trace(mut self, arguments: &RunArguments, columns: Vec<Column>, out: impl Write) -> Result<Outcome, Error> {
+    fn trace(
+        mut self,
+        arguments: &RunArguments,
+        columns: Vec<(Column, M::Place)>,
+        out: impl Write,
+    ) -> Result<Outcome, Error> {
+        let (columns, places): (Vec<Column>, Vec<M::Place>) = columns.into_iter().unzip();
         let mut out = BufWriter::new(out);
         let rungs = std::mem::take(&mut self.rungs);
         let approximations = std::mem::take(&mut self.approximations);
@@ -198,13 +311,14 @@ impl Simulation {
             if recorder.rungs.is_empty() {
                 self.machine.scan(dt);
             } else {
-                self.machine.scan_traced(dt, &mut recorder);
+                self.machine.scan_recorded(dt, &mut recorder);
             }
             scans += 1;
             dt = arguments.scan;
             // Every column was read once before the first scan: the places exist.
+            let values = places.iter().zip(&columns);
             let values =
-                columns.iter().map(|c| self.machine.get(&c.address).unwrap_or_else(|_| c.sample.clone())).collect();
+                values.map(|(place, c)| self.machine.value(place).unwrap_or_else(|| c.sample.clone())).collect();
             let row = Row { scan: scans, time: self.machine.now(), values, flows: &recorder.seen };
             let last = self.machine.now() + arguments.scan > arguments.duration || !self.machine.is_executing();
             writer.row(&mut out, &row, last)?;
@@ -214,7 +328,7 @@ impl Simulation {
         }
         writer.foot(&mut out, &self.machine)?;
         out.flush()?;
-        if let Some(fault) = self.machine.fault() {
+        if let Some(fault) = self.machine.stopped() {
             eprintln!(
                 "{}: scan {scans}, {:.3} s: {fault}",
                 arguments.program.display(),

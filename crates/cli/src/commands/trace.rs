@@ -4,16 +4,18 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use ladder::{Address, Value, format_float};
+use ladder::{Value, format_float};
 use serde_json::{Map, json};
-use sim::{Machine, PowerFlow};
+use sim::PowerFlow;
+use sim::scenario::Controller;
 
 use crate::args::TraceForm;
 use crate::output::Error;
 
 /// A value that is followed.
 pub struct Column {
-    pub address: Address,
+    /// Its address as text.
+    pub heading: String,
     /// Its value before the first scan: decides how it is written.
     pub sample: Value,
 }
@@ -40,7 +42,7 @@ pub trait Writer {
     fn head(&mut self, out: &mut dyn Write) -> Result<(), Error>;
     /// `last`: no row follows.
     fn row(&mut self, out: &mut dyn Write, row: &Row<'_>, last: bool) -> Result<(), Error>;
-    fn foot(&mut self, _out: &mut dyn Write, _machine: &Machine) -> Result<(), Error> {
+    fn foot(&mut self, _out: &mut dyn Write, _machine: &dyn Controller) -> Result<(), Error> {
         Ok(())
     }
 }
@@ -63,7 +65,7 @@ pub fn writer<'a>(
         (TraceForm::Csv, _) => Box::new(Csv { columns, rungs }),
         (TraceForm::Json, _) => Box::new(Json { columns, rungs, approximations }),
         (TraceForm::Vcd, Some(column)) => {
-            return Err(Error::Use(format!("{} is a string: a value change dump holds none", column.address)));
+            return Err(Error::Use(format!("{} is a string: a value change dump holds none", column.heading)));
         }
         (TraceForm::Vcd, None) => {
             let scope = program.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -107,7 +109,7 @@ impl Writer for Table<'_> {
     fn head(&mut self, out: &mut dyn Write) -> Result<(), Error> {
         write!(out, "{:>8}  {:>10}", "scan", "time s")?;
         for column in self.columns {
-            let heading = column.address.to_string();
+            let heading = column.heading.clone();
             // The widest number of its kind, so that columns stand.
             let least = match column.sample {
                 Value::Bit(_) => 1,
@@ -189,7 +191,7 @@ impl Csv<'_> {
 
 impl Writer for Csv<'_> {
     fn head(&mut self, out: &mut dyn Write) -> Result<(), Error> {
-        let addresses = self.columns.iter().map(|column| column.address.to_string());
+        let addresses = self.columns.iter().map(|column| column.heading.clone());
         let cells = ["scan".to_owned(), "time_s".to_owned()].into_iter().chain(addresses);
         Self::record(out, cells.chain(flow_headings(self.rungs)))
     }
@@ -222,7 +224,7 @@ impl Writer for Json<'_> {
             other => json!(plain(other)),
         };
         let pairs = self.columns.iter().zip(&row.values);
-        let values: Map<_, _> = pairs.map(|(column, found)| (column.address.to_string(), value(found))).collect();
+        let values: Map<_, _> = pairs.map(|(column, found)| (column.heading.clone(), value(found))).collect();
         let mut line = json!({"scan": row.scan, "time_s": row.time.as_secs_f64(), "values": values});
         if !self.rungs.is_empty() {
             let rungs: Map<_, _> = self
@@ -243,12 +245,12 @@ impl Writer for Json<'_> {
         Ok(())
     }
 
-    fn foot(&mut self, out: &mut dyn Write, machine: &Machine) -> Result<(), Error> {
+    fn foot(&mut self, out: &mut dyn Write, machine: &dyn Controller) -> Result<(), Error> {
         let line = json!({
             "end": true,
             "scans": machine.scans(),
             "time_s": machine.now().as_secs_f64(),
-            "fault": machine.fault().map(|fault| fault.to_string()),
+            "fault": machine.stopped().map(|stop| stop.text),
             "strays": machine.strays(),
             "approximations": self.approximations,
         });
@@ -323,7 +325,7 @@ impl Writer for Vcd<'_> {
                 Value::Float(_) => ("real", 64),
                 _ => ("wire", 1),
             };
-            writeln!(out, "$var {kind} {size} {} {} $end", code(index), vcd_name(&column.address.to_string()))?;
+            writeln!(out, "$var {kind} {size} {} {} $end", code(index), vcd_name(&column.heading))?;
         }
         for (index, heading) in flow_headings(self.rungs).enumerate() {
             writeln!(out, "$var wire 1 {} {} $end", code(self.columns.len() + index), vcd_name(&heading))?;

@@ -273,8 +273,16 @@ impl Machine {
     /// # Errors
     /// As [`Machine::handle`]; the element is read-only, of another sort, or too small for the value.
     pub fn set(&mut self, address: &str, value: &Value) -> Result<(), NameError> {
-        let wrong = |why: String| NameError { address: address.to_owned(), why };
         let handle = self.handle(address)?;
+        self.set_value(handle, value).map_err(|error| NameError { address: address.to_owned(), ..error })
+    }
+
+    /// Writes the value at a place; the error names no address.
+    ///
+    /// # Errors
+    /// The element is read-only, of another sort, or too small for the value.
+    pub fn set_value(&mut self, handle: Handle, value: &Value) -> Result<(), NameError> {
+        let wrong = |why: String| NameError { address: String::new(), why };
         if handle.0.read_only {
             return Err(wrong("it is read-only: an instruction owns it".to_owned()));
         }

@@ -15,6 +15,10 @@ pub trait Controller {
     fn enter_run(&mut self);
     /// Time passes, then one scan runs.
     fn scan(&mut self, dt: Duration);
+    /// Scans so far.
+    fn scans(&self) -> u64;
+    /// The program is executed.
+    fn is_executing(&self) -> bool;
     /// Simulated time.
     fn now(&self) -> Duration;
     /// Instructions executed so far.
@@ -69,6 +73,14 @@ impl Controller for Machine {
 
     fn scan(&mut self, dt: Duration) {
         Machine::scan(self, dt);
+    }
+
+    fn scans(&self) -> u64 {
+        Machine::scans(self)
+    }
+
+    fn is_executing(&self) -> bool {
+        Machine::is_executing(self)
     }
 
     fn now(&self) -> Duration {
