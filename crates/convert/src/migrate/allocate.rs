@@ -111,6 +111,8 @@ pub struct Span {
     pub words: u32,
     /// Words per element of the data file.
     pub size: u32,
+    /// Words of these that the original has: rungs that were never verified can name more.
+    pub own: u32,
     /// Of I and O: index of the first word in the data file; `None` for a word the file does not have.
     pub stored: Option<u32>,
     /// Where the first word lies. In bit blocks a word takes 16 elements; in D and R an element takes
@@ -166,23 +168,24 @@ impl Places {
         // N7 first: its numbers stay what people know.
         let mut files: Vec<_> = image.data_files.iter().collect();
         files.sort_by_key(|file| (file.file_type != FileType::N, file.file_type == FileType::S, file.number));
+        let named: BTreeMap<_, _> = facts.named().collect();
         for file in files {
+            let elements = named.get(&(file.file_type, file.number)).map_or(0, |highest| u32::from(*highest) + 1);
             let size = u32::from(file.words_per_element.max(1));
-            let mut words = u32::from(file.elements).saturating_mul(size);
-            let block = match file.file_type {
-                FileType::I | FileType::O | FileType::M0 | FileType::M1 => continue,
-                FileType::Unused | FileType::Reserved | FileType::Unknown(_) => continue,
-                FileType::B if !facts.file(FileType::B, file.number).dynamic => Block::C,
-                FileType::F => Block::R,
-                FileType::L => Block::D,
-                FileType::ST => Block::Sl,
-                FileType::S => {
-                    words = words.max(STATUS_WORDS);
-                    Block::N
-                }
-                _ => Block::N,
-            };
-            places.append(file.file_type, file.number, 0, words, size, block);
+            let own = u32::from(file.elements).saturating_mul(size);
+            let words = own.max(elements.saturating_mul(size));
+            places.data_file(facts, file.file_type, file.number, words, size, own);
+        }
+        // Files rungs name that the data table does not have: verifying would make them.
+        for ((file_type, number), highest) in facts.named() {
+            let known = image.data_files.iter().any(|file| {
+                file.number == number && !matches!(file.file_type, FileType::Unused) && !file_type.is_function_file()
+            });
+            let Some(size) = file_type.words_per_element() else { continue };
+            if !known && !file_type.is_function_file() {
+                let size = u32::from(size);
+                places.data_file(facts, file_type, number, (u32::from(highest) + 1).saturating_mul(size), size, 0);
+            }
         }
         for file in &image.function_files {
             if file.file_type != FileType::RTC && facts.file(file.file_type, file.number) == Default::default() {
@@ -193,6 +196,27 @@ impl Places {
             places.append(file.file_type, file.number, 0, words, size, Block::N);
         }
         places
+    }
+
+    /// A data file of the data table.
+    fn data_file(&mut self, facts: &Facts, file_type: FileType, number: u16, words: u32, size: u32, own: u32) {
+        let block = match file_type {
+            FileType::I | FileType::O | FileType::M0 | FileType::M1 => return,
+            FileType::Unused | FileType::Reserved | FileType::Unknown(_) => return,
+            FileType::B if !facts.file(FileType::B, number).dynamic => Block::C,
+            FileType::F => Block::R,
+            FileType::L => Block::D,
+            FileType::ST => Block::Sl,
+            _ => Block::N,
+        };
+        let status = file_type == FileType::S;
+        let words = if status { words.max(STATUS_WORDS) } else { words };
+        let before = self.spans.len();
+        self.append(file_type, number, 0, words, size, block);
+        if let Some(span) = self.spans.get_mut(before) {
+            // The controller has status words an old image does not hold.
+            span.own = if status { words } else { own };
+        }
     }
 
     /// I/O words of the configuration and those the program names besides.
@@ -241,7 +265,7 @@ impl Places {
             return;
         }
         let at = Element { block, number: self.next.get(&block).copied().unwrap_or(0) };
-        let span = Span { file_type, file, first_word, words, size, stored: None, at };
+        let span = Span { file_type, file, first_word, words, size, own: words, stored: None, at };
         self.next.insert(block, at.number.saturating_add(span.elements()));
         self.index.entry((file_type, file)).or_default().push(self.spans.len());
         self.spans.push(span);

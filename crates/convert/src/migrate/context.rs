@@ -10,6 +10,7 @@ use super::allocate::{Block, Element, Places};
 use super::control::Flow;
 use super::emit::Emitter;
 use super::facts::Facts;
+use super::interrupts::Timed;
 use super::marks::{Mark, Note};
 
 /// Why an instruction has no conversion: its rung needs a person.
@@ -51,8 +52,14 @@ pub struct Context<'a> {
     named: BTreeMap<String, Element>,
     /// The real-time clock file is read.
     pub reads_rtc: bool,
+    /// Instructions of the rung at hand behind the one at hand.
+    pub(super) left: usize,
+    /// A bit that is ON when a jump before the instruction at hand, in its rung, was taken.
+    pub(super) jumped: Option<String>,
     /// Where the rung at hand stands.
     pub(super) flow: Option<Flow>,
+    /// The timed interrupt of the program.
+    pub(super) timed: Option<Timed>,
     /// Names of the subroutines that called files became.
     pub(super) subroutines: BTreeMap<u16, String>,
     /// Status words that are computed at the beginning of each scan.
@@ -99,7 +106,10 @@ impl<'a> Context<'a> {
             helpers: BTreeMap::new(),
             named: BTreeMap::new(),
             reads_rtc: false,
+            left: 0,
+            jumped: None,
             flow: None,
+            timed: None,
             subroutines: BTreeMap::new(),
             status_words: BTreeSet::new(),
             needs: Needs::default(),

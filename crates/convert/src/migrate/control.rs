@@ -40,6 +40,10 @@ pub(super) struct Flow {
     pub(super) end: u32,
     /// Rungs can be skipped.
     pub(super) jumps: bool,
+    /// First and last rung of each loop.
+    pub(super) loops: Vec<(u32, u32)>,
+    /// Number of the rung.
+    pub(super) rung: u32,
     /// With respect to MCR zones.
     pub(super) zone: Zone,
     /// The file this rung calls follows in place.
@@ -49,6 +53,12 @@ pub(super) struct Flow {
 /// The register that holds where a jump of a file leads.
 pub(super) fn jump_register(context: &mut Context<'_>, file: u16) -> String {
     context.helper(Block::D, &format!("slcJump{file}"), &format!("file {file}: rung a jump leads to, 0 for none"))
+}
+
+/// The bit that is ON when the loop at a rung is over.
+pub(super) fn loop_bit(context: &mut Context<'_>, file: u16, from: u32) -> String {
+    let text = format!("file {file}: the loop at rung {from} is over");
+    context.helper(Block::C, &format!("slcLoop{file}_{from}"), &text)
 }
 
 /// The bit that is ON while the zone of a file is true.
@@ -88,17 +98,42 @@ fn jump(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -
     let Some(target) = target else {
         return Err(Person::new(Mark::Flow, "JMP to a label that is not there"));
     };
-    if jumps {
+    let rung = flow(context)?.rung;
+    let mut target = target;
+    taken(context, e);
+    if target <= rung {
+        // Back: the rest of the loop is skipped, and the loop goes on.
+        let last = flow(context)?.loops.iter().find(|found| found.0 == target).map(|found| found.1);
+        let Some(last) = last else { return Err(Person::new(Mark::Flow, "a jump back that is no loop")) };
+        let over = loop_bit(context, file, target);
+        e.reset(&over);
+        target = last.saturating_add(1);
+    }
+    if jumps && target > rung.saturating_add(1) {
         let register = jump_register(context, file);
         e.mov(&target.to_string(), &register);
     }
     Ok(())
 }
 
+/// A jump with instructions behind it in its rung: these get no power when it is taken.
+fn taken(context: &mut Context<'_>, e: &mut Emitter) {
+    if context.left == 0 {
+        return;
+    }
+    let bit = context.helper(Block::C, "slcJumped", "a jump in the rung at hand was taken");
+    match context.jumped {
+        Some(_) => e.set(&bit),
+        None => e.hold(&bit),
+    }
+    context.jumped = Some(bit);
+}
+
 /// RET and TND of the main program: the rest of the file is skipped.
 fn leave(context: &mut Context<'_>, e: &mut Emitter, _: &Instruction) -> Converted {
+    taken(context, e);
     let (file, jumps, end) = (flow(context)?.file, flow(context)?.jumps, flow(context)?.end);
-    if jumps {
+    if jumps && end > flow(context)?.rung.saturating_add(1) {
         let register = jump_register(context, file);
         e.mov(&end.to_string(), &register);
     }

@@ -33,13 +33,13 @@ pub(super) struct Parts {
 
 impl Parts {
     /// The parts of the element an instruction names first.
-    pub(super) fn of(context: &Context<'_>, instruction: &Instruction, file_type: FileType) -> Converted<Parts> {
+    pub(super) fn of(context: &mut Context<'_>, instruction: &Instruction, file_type: FileType) -> Converted<Parts> {
         Parts::at(context, instruction, 0, file_type)
     }
 
     /// The parts of the element that operand `index` names.
     pub(super) fn at(
-        context: &Context<'_>,
+        context: &mut Context<'_>,
         instruction: &Instruction,
         index: usize,
         file_type: FileType,
@@ -57,6 +57,7 @@ impl Parts {
         let Some((file_type, file, word)) = found.filter(|(t, f, w)| context.places.span(*t, *f, *w).is_some()) else {
             return Err(Person::new(Mark::Operand, format!("{address} does not exist in the data table")));
         };
+        context.note_beyond(address);
         Ok(Parts { file_type, file, word })
     }
 

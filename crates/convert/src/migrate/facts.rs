@@ -17,6 +17,8 @@ pub struct FileUse {
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     files: BTreeMap<(FileType, u16), FileUse>,
+    /// Elements the rungs name, highest number of each file.
+    highest: BTreeMap<(FileType, u16), u16>,
     /// Types of which a file is chosen at run time.
     any_file: BTreeSet<FileType>,
     /// I/O words by type, slot and word, whether used as a word, and as bits.
@@ -101,6 +103,10 @@ impl Facts {
         let usage = self.files.entry((address.file_type, file)).or_default();
         usage.dynamic |= dynamic;
         usage.words |= whole_words;
+        if let Place::Number(element) = address.element {
+            let highest = self.highest.entry((address.file_type, file)).or_default();
+            *highest = element.max(*highest);
+        }
         if address.file_type == FileType::S
             && let Place::Number(word) = address.element
         {
@@ -122,6 +128,11 @@ impl Facts {
         let mut usage = self.files.get(&(file_type, number)).copied().unwrap_or_default();
         usage.dynamic |= self.any_file.contains(&file_type);
         usage
+    }
+
+    /// Files the rungs name with the highest element of each.
+    pub fn named(&self) -> impl Iterator<Item = ((FileType, u16), u16)> {
+        self.highest.iter().map(|(key, element)| (*key, *element))
     }
 
     /// I/O and module words the program names: type, slot, word; used as words, as bits.

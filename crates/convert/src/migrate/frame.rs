@@ -28,7 +28,8 @@ fn rung(e: Emitter, comment: &str) -> Rung {
 /// The rungs before the program.
 pub(super) fn before(context: &mut Context<'_>, has_initial: bool) -> Vec<Rung> {
     // Status words can need the clock, so they come first here and last in the program.
-    let status = status_words(context);
+    let mut status = status_words(context);
+    status.extend(super::interrupts::rungs(context));
     let mut rungs = Vec::new();
     if has_initial {
         let done = initialized(context);

@@ -345,10 +345,6 @@ fn float_quotient(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, t
         store_float(cx, e, &a.float_operation('/', b), to);
         return Ok(());
     }
-    cx.condition(
-        Mark::Fault,
-        "a float division by zero stores infinity there; here the destination keeps its value and the trap S:5/0 is set",
-    );
     let divisor = match b.plain() {
         Some(_) => b.clone(),
         None => {
@@ -357,17 +353,45 @@ fn float_quotient(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, t
             Value::element(scratch, Width::Float)
         }
     };
-    let zero = if divisor.is_float() { "0.0" } else { "0" };
+    let none = if divisor.is_float() { "0.0" } else { "0" };
     let trap = cx.minor_error_bit(0);
     let operand = divisor.plain().unwrap_or_default().to_owned();
+    if to.width == Width::Float {
+        cx.condition(
+            Mark::Fault,
+            "a float division by zero stores infinity there; here the destination keeps its value and the trap S:5/0 is set",
+        );
+        e.when(|e| {
+            e.and_compare(Relation::Equal, &operand, none);
+            e.set(&trap);
+        });
+        e.when(|e| {
+            e.and_compare(Relation::NotEqual, &operand, none);
+            store_float(cx, e, &a.float_operation('/', &divisor), to);
+        });
+        return Ok(());
+    }
+    // Infinity is limited to the destination; operands may stand in it, so the decision is kept.
+    let zero = cx.scratch_bit(93);
     e.when(|e| {
-        e.and_compare(Relation::Equal, &operand, zero);
+        e.and_compare(Relation::Equal, &operand, none);
+        e.hold(&zero);
+    });
+    let (low, high) = limits(to.width);
+    let below = relation(a, "<", &if a.is_float() { Value::real(0.0) } else { Value::integer(0) });
+    let limit = choose(&below, &Value::integer(low), &Value::integer(high));
+    e.when(|e| {
+        e.and(&zero);
         e.set(&trap);
+        put(e, &limit, to);
     });
     e.when(|e| {
-        e.and_compare(Relation::NotEqual, &operand, zero);
+        e.and_not(&zero);
         store_float(cx, e, &a.float_operation('/', &divisor), to);
     });
+    if cx.facts.names_status(0) {
+        cx.condition(Mark::MathRegister, "S:0 after a division by 0.0 is not kept up");
+    }
     Ok(())
 }
 

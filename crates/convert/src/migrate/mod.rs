@@ -25,6 +25,7 @@ pub mod facts;
 mod files;
 mod frame;
 pub mod initial;
+mod interrupts;
 pub mod map_file;
 pub mod marks;
 mod math;
@@ -141,18 +142,18 @@ pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migra
     map_file::apply(&mut places, map)?;
     let plan = plan::plan(image);
     let mut context = Context::new(image, &facts, options, places);
-    context.reads_rtc = facts.file(ladder::FileType::RTC, 0) != facts::FileUse::default();
     for (file, block) in &plan.subroutines {
         if let Some(block) = plan.blocks.get(*block) {
             context.subroutines.insert(*file, block.name.clone());
         }
     }
+    context.timed = plan.timed.clone();
     let mut rungs = Vec::new();
     let mut blocks: Vec<domore::CodeBlock> = plan.blocks.iter().map(|block| code_block(&block.name)).collect();
     for (planned, made) in plan.blocks.iter().zip(&mut blocks) {
-        context.conditional = planned.conditional;
         for item in &planned.items {
-            made.rungs.push(item_rung(&mut context, &plan, item, &planned.name, made.rungs.len(), &mut rungs));
+            let new = item_rungs(&mut context, &plan, item, &planned.name, made.rungs.len(), &mut rungs);
+            made.rungs.extend(new);
         }
     }
     let initial = initial::values(image, &facts, &context.places);
@@ -169,32 +170,54 @@ fn code_block(name: &str) -> domore::CodeBlock {
     domore::CodeBlock { kind, name: name.to_owned(), ..domore::CodeBlock::default() }
 }
 
-/// The rung of an item; a rung of the original adds its result.
-fn item_rung(
+/// The rungs of an item; a rung of the original adds its result.
+fn item_rungs(
     context: &mut Context<'_>,
     plan: &Plan,
     item: &Item,
     block: &str,
     block_rung: usize,
     rungs: &mut Vec<RungResult>,
-) -> domore::Rung {
-    let mut e = Emitter::new();
-    match item {
-        Item::Enter(frame) => {
-            let file = plan.frames.get(*frame).map_or(0, |frame| frame.file);
-            let register = control::jump_register(context, file);
-            e.mov("0", &register);
-            domore::Rung::new(e.finish())
+) -> Vec<domore::Rung> {
+    let frame = match item {
+        Item::Enter(frame) | Item::Repeat { frame, .. } | Item::Until { frame, .. } | Item::Segment { frame, .. } => {
+            plan.frames.get(*frame)
         }
-        Item::Segment { frame, from, block } => {
-            let file = plan.frames.get(*frame).map_or(0, |frame| frame.file);
-            let register = control::jump_register(context, file);
+        Item::Rung(place) => return vec![original_rung(context, plan, place, block, block_rung, rungs)],
+    };
+    let Some(frame) = frame else { return Vec::new() };
+    let mut e = Emitter::new();
+    let alone = |name: &str, operand: Option<String>| domore::Rung::new([domore::Instruction::new(name, operand)]);
+    match item {
+        Item::Rung(_) => Vec::new(),
+        Item::Enter(_) => {
+            let register = control::jump_register(context, frame.file);
+            e.mov("0", &register);
+            vec![domore::Rung::new(e.finish())]
+        }
+        Item::Repeat { from, .. } => {
+            let over = control::loop_bit(context, frame.file, *from);
+            e.set(&over);
+            vec![alone("REPEAT", None), domore::Rung::new(e.finish())]
+        }
+        Item::Until { from, .. } => {
+            let over = control::loop_bit(context, frame.file, *from);
+            let until = alone("UNTIL", Some(over.clone()));
+            if !frame.jumps {
+                return vec![until];
+            }
+            let register = control::jump_register(context, frame.file);
+            e.and_not(&over);
+            e.mov("0", &register);
+            vec![domore::Rung::new(e.finish()), until]
+        }
+        Item::Segment { from, block, .. } => {
+            let register = control::jump_register(context, frame.file);
             e.and_compare(emit::Relation::LessOrEqual, &register, &from.to_string());
             let name = plan.blocks.get(*block).map_or("", |block| &block.name);
             control::append_call(&mut e, name);
-            domore::Rung::new(e.finish())
+            vec![domore::Rung::new(e.finish())]
         }
-        Item::Rung(place) => original_rung(context, plan, place, block, block_rung, rungs),
     }
 }
 
@@ -214,11 +237,17 @@ fn original_rung(
         image.program_file(file).and_then(|file| file.rungs.get(usize::try_from(place.rung).ok()?)).unwrap_or(&empty);
     let original = rung_text(rung);
     context.conditions.clear();
+    context.conditional = place.conditional;
+    context.left = rung.instructions().count();
+    context.jumped = None;
+    context.conditions.extend(place.condition.clone());
     context.flow = frame.map(|frame| Flow {
         file,
         labels: frame.labels.clone(),
         end: frame.end,
         jumps: frame.jumps,
+        loops: frame.loops.clone(),
+        rung: place.rung,
         zone: place.zone,
         in_place: place.in_place,
     });
@@ -306,6 +335,10 @@ fn notes(image: &Image, context: &Context<'_>) -> Vec<Note> {
         let text = "overflow (S:5/0) and control register errors (S:5/2) stop the original at the end of the scan: \
                     the last rung does the same with HALT; restart by PROGRAM and RUN";
         notes.push(Note::new(Mark::Fault, text));
+    }
+    if context.reads_rtc || context.status_words.iter().any(|word| *word > 4) {
+        let text = "the program reads the clock: set the Do-more clock to the time of the original's";
+        notes.push(Note::new(Mark::Clock, text));
     }
     if image.program_file(2).is_none() {
         notes.push(Note::new(Mark::Fault, "there is no program file 2: the original does not run"));

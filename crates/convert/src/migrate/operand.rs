@@ -6,7 +6,7 @@ use ladder::{Address, FileType, Instruction, Number, Operand, Place};
 use super::allocate::Block;
 use super::context::{Context, Converted, Person};
 use super::emit::{Contact, Emitter};
-use super::marks::Mark;
+use super::marks::{Mark, Note};
 
 /// A value that is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +70,11 @@ pub struct Start {
 
 fn missing(address: &Address) -> Person {
     Person::new(Mark::Operand, format!("{address} does not exist in the data table"))
+}
+
+/// An address the data table does not have.
+fn beyond_note(address: &Address) -> Note {
+    Note::new(Mark::Operand, format!("{address} lies beyond the original's data table: it has a place here, from 0"))
 }
 
 /// Operand `index` of an instruction.
@@ -201,6 +206,7 @@ impl Context<'_> {
 
     fn direct(&mut self, address: &Address) -> Converted<Target> {
         let (file_type, file, word) = self.places.word_of(address).ok_or_else(|| missing(address))?;
+        self.note_beyond(address);
         let span = self.places.span(file_type, file, word).ok_or_else(|| missing(address))?;
         if matches!(span.at.block, Block::D | Block::R | Block::Sl) {
             let width = if span.at.block == Block::R { Width::Float } else { Width::Long };
@@ -214,7 +220,12 @@ impl Context<'_> {
             return Err(Person::new(Mark::Operand, format!("{address} is a structure, a value is needed")));
         }
         if is_long_member(address) {
-            return Err(Person::new(Mark::NoCounterpart, format!("{address} is a 32-bit member of a function file")));
+            let text = self.places.word(file_type, file, word).ok_or_else(|| missing(address))?;
+            self.function_file(address);
+            return Ok(Target { text: format!("{text}:SD"), width: Width::Long, plain: true });
+        }
+        if file_type.is_function_file() {
+            self.function_file(address);
         }
         if file_type == FileType::S {
             self.status_read(address)?;
@@ -375,6 +386,27 @@ impl Context<'_> {
         }
     }
 
+    /// Notes what a function file is here: memory that nothing of the controller writes, the clock apart,
+    /// which is copied at the beginning of each scan.
+    fn function_file(&mut self, address: &Address) {
+        match address.file_type {
+            // Read as the clock of this controller; see the notes on the program.
+            FileType::RTC => self.reads_rtc = true,
+            _ => self.condition(
+                Mark::AsyncIo,
+                format!("{address} belongs to the original's controller: here it is memory that a person connects"),
+            ),
+        }
+    }
+
+    /// Notes an element the original's data table does not have.
+    pub(super) fn note_beyond(&mut self, address: &Address) {
+        let Some((file_type, file, word)) = self.places.word_of(address) else { return };
+        if self.places.span(file_type, file, word).is_some_and(|span| word - span.first_word >= span.own) {
+            self.conditions.insert(beyond_note(address));
+        }
+    }
+
     fn direct_bit(&mut self, address: &Address) -> Converted<String> {
         let (file_type, file, word) = self.places.word_of(address).ok_or_else(|| missing(address))?;
         let bit = address.bit.as_ref().and_then(Place::number).unwrap_or(0) % 16;
@@ -386,6 +418,10 @@ impl Context<'_> {
         if matches!(file_type, FileType::M0 | FileType::M1) {
             self.condition(Mark::AsyncIo, format!("{address} is module memory: here it is plain memory"));
         }
+        if file_type.is_function_file() {
+            self.function_file(address);
+        }
+        self.note_beyond(address);
         self.places.bit(file_type, file, word, bit).ok_or_else(|| missing(address))
     }
 

@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ladder::{Element, FileType, Image, Instruction, Operand, ProgramFile, Rung};
 
+use super::interrupts::Timed;
 use super::marks::{Mark, Note};
 
 /// All code blocks.
@@ -19,6 +20,8 @@ pub(super) struct Plan {
     pub(super) blocks: Vec<Block>,
     /// One per program file that has rungs.
     pub(super) frames: Vec<Frame>,
+    /// The timed interrupt.
+    pub(super) timed: Option<Timed>,
     /// Subroutine of a called file that is not in place.
     pub(super) subroutines: BTreeMap<u16, usize>,
 }
@@ -40,6 +43,20 @@ pub(super) enum Item {
     Rung(Place),
     /// The jump register of a frame becomes 0.
     Enter(usize),
+    /// A loop begins: its first rung.
+    Repeat {
+        /// The file's.
+        frame: usize,
+        /// Its first rung.
+        from: u32,
+    },
+    /// The loop that began last goes on while a jump led back.
+    Until {
+        /// The file's.
+        frame: usize,
+        /// The loop's first rung.
+        from: u32,
+    },
     /// A block is called unless a jump skips it.
     Segment {
         /// Whose register decides.
@@ -57,10 +74,14 @@ pub(super) struct Place {
     pub(super) frame: usize,
     pub(super) rung: u32,
     pub(super) zone: Zone,
+    /// Not executed exactly once in every scan.
+    pub(super) conditional: bool,
     /// The rung is a call whose file follows in place.
     pub(super) in_place: Option<u16>,
     /// What keeps it from being converted.
     pub(super) problem: Option<Note>,
+    /// What its file being called by the controller means for it.
+    pub(super) condition: Option<Note>,
 }
 
 /// Where a rung stands with respect to MCR zones.
@@ -86,6 +107,8 @@ pub(super) struct Frame {
     pub(super) end: u32,
     /// A jump can skip rungs: its register is needed.
     pub(super) jumps: bool,
+    /// First and last rung of each loop.
+    pub(super) loops: Vec<(u32, u32)>,
 }
 
 /// What ends or leaves the sequence of rungs.
@@ -109,6 +132,10 @@ pub(super) fn plan(image: &Image) -> Plan {
         placed: BTreeSet::new(),
         wanted: Vec::new(),
     };
+    planner.plan.timed = planner.interrupts.iter().find_map(|(file, source)| match source {
+        Interrupt::Timed(period, unit) => Some(Timed { file: *file, period: *period, unit: *unit }),
+        _ => None,
+    });
     planner.plan.blocks.push(Block { name: "$Main".to_owned(), conditional: false, items: Vec::new() });
     if let Some(main) = image.program_file(2) {
         planner.placed.insert(2);
@@ -152,36 +179,75 @@ pub(super) fn called(instruction: &Instruction) -> Option<u16> {
     }
 }
 
+/// What makes the controller itself call a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Interrupt {
+    /// A major fault.
+    Fault,
+    /// Time: the period in milliseconds that is stored, 0 when it is not running, and its unit.
+    Timed(u32, u32),
+    /// An input or a high-speed counter.
+    Event,
+}
+
+impl Interrupt {
+    /// What keeps the rungs of such a file from being converted, or the condition they are under.
+    fn notes(self, file: u16) -> (Option<Note>, Option<Note>) {
+        let note = |text: String| Some(Note::new(Mark::Interrupt, text));
+        match self {
+            Interrupt::Fault => {
+                (None, note(format!("file {file} is the fault routine: faults of the original do not occur here")))
+            }
+            Interrupt::Timed(..) => (
+                None,
+                note(format!(
+                    "file {file} is a timed interrupt (STI): here it runs at the beginning of the scan in which its time \
+                     is up, once in a scan"
+                )),
+            ),
+            Interrupt::Event => (
+                note(format!("file {file} is an interrupt of an input or a high-speed counter: nothing here calls it")),
+                None,
+            ),
+        }
+    }
+}
+
 /// Files that the controller itself calls, with what calls them.
-fn interrupts(image: &Image) -> BTreeMap<u16, &'static str> {
+pub(super) fn interrupts(image: &Image) -> BTreeMap<u16, Interrupt> {
     let mut found = BTreeMap::new();
     let status = |word: u16| {
         let file = image.data_file(FileType::S, 2)?;
         file.element_words(word).and_then(|words| words.first().copied())
     };
-    let words: [(u16, &str); 4] =
-        [(29, "fault routine"), (31, "timed interrupt (STI)"), (47, "input interrupt (DII)"), (32, "I/O interrupt")];
-    for (word, what) in words {
-        // S:47 names a file on processors with a DII only, S:32 is the executing slot.
-        if matches!(word, 47 | 32) {
-            continue;
-        }
-        if let Some(file) = status(word).filter(|file| (3..=255).contains(file)) {
-            found.insert(file, what);
+    let is_file = |file: &u16| (3..=255).contains(file);
+    if let Some(file) = status(29).filter(is_file) {
+        found.insert(file, Interrupt::Fault);
+    }
+    let rules = instr::exec::Rules::of(image.processor.family);
+    if rules.lineage != instr::exec::Lineage::Mx {
+        if let Some(file) = status(31).filter(is_file) {
+            // S:2/10 of SLC 5/03 and higher: milliseconds instead of 10 ms. S:2/1: enabled.
+            let control = status(2).unwrap_or(0);
+            let fine = control & 1 << 10 != 0 && rules.lineage == instr::exec::Lineage::S3;
+            let unit = if fine { 1 } else { 10 };
+            let period = u32::from(status(30).unwrap_or(0)) * unit;
+            let enabled = control & 2 != 0;
+            found.insert(file, Interrupt::Timed(if enabled { period } else { 0 }, unit));
         }
     }
     for file in &image.function_files {
-        let what = match file.file_type {
-            FileType::STI => "timed interrupt (STI)",
-            FileType::EII => "event input interrupt",
-            FileType::HSC => "high-speed counter interrupt",
-            _ => continue,
-        };
+        if !matches!(file.file_type, FileType::STI | FileType::EII | FileType::HSC) {
+            continue;
+        }
         for element in 0..file.elements {
-            let number = file.element_words(element).and_then(|words| words.first().copied());
-            if let Some(number) = number.filter(|file| (3..=255).contains(file)) {
-                found.insert(number, what);
-            }
+            let Some(words) = file.element_words(element) else { continue };
+            let word = |index: usize| words.get(index).copied().unwrap_or(0);
+            let Some(number) = Some(word(0)).filter(is_file) else { continue };
+            // AS or TIE: it runs; the set point is in milliseconds.
+            let runs = word(2) & (1 << 5 | 1 << 4) != 0;
+            let timed = Interrupt::Timed(if runs { word(3).into() } else { 0 }, 1);
+            found.insert(number, if file.file_type == FileType::STI { timed } else { Interrupt::Event });
         }
     }
     found
@@ -190,7 +256,7 @@ fn interrupts(image: &Image) -> BTreeMap<u16, &'static str> {
 struct Planner<'a> {
     image: &'a Image,
     calls: BTreeMap<u16, usize>,
-    interrupts: BTreeMap<u16, &'static str>,
+    interrupts: BTreeMap<u16, Interrupt>,
     plan: Plan,
     placed: BTreeSet<u16>,
     /// Files that become subroutines, in the order they were met.
@@ -207,19 +273,19 @@ impl Planner<'_> {
         let name = block_name(&format!("SLC{number}"), &file.name);
         self.plan.blocks.push(Block { name, conditional: true, items: Vec::new() });
         self.plan.subroutines.insert(number, block);
-        let problem = self.interrupts.get(&number).filter(|_| !self.calls.contains_key(&number)).map(|what| {
-            Note::new(Mark::Interrupt, format!("file {number} is a {what}: nothing in Do-more calls it by itself"))
-        });
-        self.file(file, block, 0, problem);
+        let interrupt = self.interrupts.get(&number).copied();
+        let interrupt = interrupt.filter(|_| !self.calls.contains_key(&number));
+        self.file(file, block, 0, interrupt);
     }
 
     /// Places the rungs of a file at the end of a block.
-    fn file(&mut self, file: &ProgramFile, block: usize, depth: usize, problem: Option<Note>) {
+    fn file(&mut self, file: &ProgramFile, block: usize, depth: usize, interrupt: Option<Interrupt>) {
+        let (problem, interrupt) = interrupt.map_or((None, None), |source| source.notes(file.number));
         let end = u32::try_from(file.rungs.iter().take_while(|rung| !rung.is_end()).count()).unwrap_or(u32::MAX);
-        let frame = self.plan.frames.len();
         let labels = labels(file);
+        let loops = loops(file, end, &labels);
         let leaps: Vec<Option<Leap>> = (0..end)
-            .map(|number| file.rungs.get(number as usize).and_then(|rung| leap(rung, number, end, &labels)))
+            .map(|number| file.rungs.get(number as usize).and_then(|rung| leap(rung, number, end, &labels, &loops)))
             .collect();
         // A rung can be skipped when a leap before it leads past it.
         let mut guarded = Vec::with_capacity(leaps.len());
@@ -232,41 +298,65 @@ impl Planner<'_> {
         }
         let jumps = guarded.contains(&true);
         let zones = zones(file, end, &guarded, &labels);
-        self.plan.frames.push(Frame { file: file.number, labels: labels.clone(), end, jumps });
+        let frame = self.plan.frames.len();
+        self.plan.frames.push(Frame { file: file.number, labels: labels.clone(), end, jumps, loops: loops.clone() });
         if jumps {
             self.push(block, Item::Enter(frame));
         }
         let targets: BTreeSet<u32> = labels.values().copied().collect();
         let mut segment: Option<usize> = None;
+        // Loops that are open: the last rung of each and the block it repeats in.
+        let mut open: Vec<(u32, u32, usize)> = Vec::new();
         for number in 0..end {
             let index = number as usize;
             let Some(rung) = file.rungs.get(index) else { break };
             let is_guarded = guarded.get(index).copied().unwrap_or(false);
             let after_leap = index.checked_sub(1).and_then(|before| leaps.get(before)).is_some_and(Option::is_some);
+            let base = open.last().map_or(block, |open| open.2);
+            let begins = loops.iter().find(|found| found.0 == number);
             let target = match (is_guarded, segment) {
                 (false, _) => {
                     segment = None;
-                    block
+                    base
                 }
                 (true, Some(open)) if !after_leap && !targets.contains(&number) => open,
                 (true, _) => {
                     let new = self.plan.blocks.len();
                     let name = format!("SLC{}from{number}", file.number);
                     self.plan.blocks.push(Block { name, conditional: true, items: Vec::new() });
-                    self.push(block, Item::Segment { frame, from: number, block: new });
+                    self.push(base, Item::Segment { frame, from: number, block: new });
                     segment = Some(new);
                     new
                 }
             };
+            if let Some((from, to)) = begins {
+                // The whole loop stays in one block; what is skipped inside it is called from there.
+                self.push(target, Item::Repeat { frame, from: *from });
+                open.push((*from, *to, target));
+                segment = None;
+            }
             let (zone, zone_problem) = zones.get(index).cloned().unwrap_or((Zone::Outside, None));
             let back = matches!(leaps.get(index), Some(Some(Leap::Impossible)))
-                .then(|| Note::new(Mark::Flow, "a jump back, or to a label that is not there"));
-            let in_place = self.in_place(rung, target, zone, depth);
+                .then(|| Note::new(Mark::Flow, "a jump into or out of a loop, or to a label that is not there"));
+            let in_place = if open.is_empty() { self.in_place(rung, target, zone, depth) } else { None };
             let problem = problem.clone().or(zone_problem).or(back).or_else(|| misplaced(rung, file.number));
-            self.push(target, Item::Rung(Place { frame, rung: number, zone, in_place, problem }));
+            let conditional = !open.is_empty() || self.plan.blocks.get(target).is_some_and(|block| block.conditional);
+            let condition = interrupt.clone();
+            self.push(
+                target,
+                Item::Rung(Place { frame, rung: number, zone, conditional, in_place, problem, condition }),
+            );
             match in_place.and_then(|called| self.image.program_file(called)) {
                 Some(called) => self.file(called, target, depth + 1, None),
                 None => self.wanted.extend(rung.instructions().filter_map(called)),
+            }
+            while let Some((from, to, block)) = open.last().copied() {
+                if to != number {
+                    break;
+                }
+                self.push(block, Item::Until { frame, from });
+                open.pop();
+                segment = None;
             }
         }
     }
@@ -318,14 +408,45 @@ pub(super) fn label(instruction: &Instruction) -> Option<u16> {
     }
 }
 
+/// The loops of a file, outer ones first: each label with a jump back to it, to the last of these jumps.
+/// Empty when loops overlap without one lying inside the other, or a jump leads into one from outside.
+fn loops(file: &ProgramFile, end: u32, labels: &BTreeMap<u16, u32>) -> Vec<(u32, u32)> {
+    let mut found: BTreeMap<u32, u32> = BTreeMap::new();
+    let mut jumps = Vec::new();
+    for (number, rung) in file.rungs.iter().enumerate().take(end as usize) {
+        let number = u32::try_from(number).unwrap_or(u32::MAX);
+        for instruction in rung.instructions().filter(|instruction| instruction.mnemonic == "JMP") {
+            let Some(to) = label(instruction).and_then(|label| labels.get(&label)).copied() else { continue };
+            jumps.push((number, to));
+            if to <= number {
+                let last = found.entry(to).or_insert(number);
+                *last = (*last).max(number);
+            }
+        }
+    }
+    let loops: Vec<(u32, u32)> = found.into_iter().collect();
+    let nested = loops.iter().all(|a| {
+        loops.iter().all(|b| b.1 < a.0 || a.1 < b.0 || (a.0 <= b.0 && b.1 <= a.1) || (b.0 <= a.0 && a.1 <= b.1))
+    });
+    let entered = jumps
+        .iter()
+        .any(|(from, to)| loops.iter().any(|(first, last)| first < to && to <= last && (from < first || last < from)));
+    if nested && !entered { loops } else { Vec::new() }
+}
+
 /// Where the furthest of a rung's jumps leads.
-fn leap(rung: &Rung, number: u32, end: u32, labels: &BTreeMap<u16, u32>) -> Option<Leap> {
+fn leap(rung: &Rung, number: u32, end: u32, labels: &BTreeMap<u16, u32>, loops: &[(u32, u32)]) -> Option<Leap> {
     let mut found = None;
     for instruction in rung.instructions() {
         let to = match instruction.mnemonic.name() {
             Some("JMP") => match label(instruction).and_then(|label| labels.get(&label)) {
                 Some(to) if *to > number => Leap::To(*to),
-                _ => Leap::Impossible,
+                // Back: past the rest of the loop, which then begins again.
+                Some(to) => match loops.iter().find(|found| found.0 == *to) {
+                    Some((_, last)) => Leap::To(last.saturating_add(1)),
+                    None => Leap::Impossible,
+                },
+                None => Leap::Impossible,
             },
             Some("RET" | "TND") => Leap::To(end),
             _ => continue,
@@ -339,19 +460,33 @@ fn leap(rung: &Rung, number: u32, end: u32, labels: &BTreeMap<u16, u32>) -> Opti
     found
 }
 
-/// Instructions that end the execution of their rung have to be the last of it.
+/// Instructions that do something without power too: skipped they keep what they would change.
+const ACTIVE: [&str; 24] = [
+    "OTE", "ONS", "OSR", "OSF", "TON", "TOF", "RTO", "CTU", "CTD", "SQO", "SQC", "SQL", "BSL", "BSR", "FFL", "FFU",
+    "LFL", "LFU", "MCR", "MSG", "PID", "DDT", "FBC", "HSC",
+];
+
+/// What keeps a jump, return or end from standing where it does. Behind it in its rung only instructions
+/// can stand that do nothing without power: the jump takes their power away.
 fn misplaced(rung: &Rung, file: u16) -> Option<Note> {
-    let mut instructions = rung.instructions().peekable();
-    while let Some(instruction) = instructions.next() {
-        let Some(name @ ("JMP" | "RET" | "TND")) = instruction.mnemonic.name() else { continue };
-        if instructions.peek().is_some() {
-            return Some(Note::new(Mark::Flow, format!("{name} in the middle of a rung: the rest of it is skipped")));
+    let mut left = None;
+    for instruction in rung.instructions() {
+        let name = instruction.mnemonic.name().unwrap_or_default();
+        if let Some(before) = left
+            && ACTIVE.contains(&name)
+        {
+            return Some(Note::new(
+                Mark::Flow,
+                format!("{name} behind {before} in one rung: it is skipped, not false"),
+            ));
         }
-        if name == "TND" && file != 2 {
-            return Some(Note::new(Mark::Flow, "TND in a subroutine ends the whole scan"));
-        }
-        if name == "RET" && file == 2 {
-            return Some(Note::new(Mark::Fault, "RET in the main program is major fault 0038"));
+        match name {
+            "TND" if file != 2 => return Some(Note::new(Mark::Flow, "TND in a subroutine ends the whole scan")),
+            "RET" if file == 2 => {
+                return Some(Note::new(Mark::Fault, "RET in the main program is major fault 0038"));
+            }
+            "JMP" | "RET" | "TND" => left = Some(name),
+            _ => {}
         }
     }
     None

@@ -39,12 +39,22 @@ fn part(context: &mut Context<'_>, e: &mut Emitter, series: &Series, depth: usiz
 }
 
 fn instruction(context: &mut Context<'_>, e: &mut Emitter, one: &Instruction) -> Converted {
+    context.left = context.left.saturating_sub(1);
     match row_of(one)? {
         row if row.contact.is_some() => match row.contact.and_then(|contact| contact(context, one)) {
             Some(contact) => e.contact(&contact),
             None => (row.convert)(context, e, one)?,
         },
-        row => (row.convert)(context, e, one)?,
+        row => match context.jumped.clone() {
+            // Outputs behind a jump that was taken get no power.
+            Some(jumped) => {
+                e.duplicate();
+                e.and_not(&jumped);
+                (row.convert)(context, e, one)?;
+                e.pop();
+            }
+            None => (row.convert)(context, e, one)?,
+        },
     }
     Ok(())
 }

@@ -138,20 +138,28 @@ fn by_constant(cx: &mut Context<'_>, e: &mut Emitter, step: &Value, rise: &Value
     }
     // The product of whole steps and that of the rest stay small where the product itself does not.
     if let Some(known) = rise.known()
-        && step.low > limits(Width::Long).0
         && step.fits(Width::Long)
     {
         let size = Value::integer(known.saturating_abs());
         let (by, half, zero) = (Value::integer(run), Value::integer(run / 2), Value::integer(0));
         let step = settled(e, step, &cx.scratch_long(2));
-        let magnitude = settled(e, &step.magnitude(), &cx.scratch_long(3));
+        // The lowest long word has no magnitude of 32 bits; its result is known.
+        let (least, most) = limits(Width::Long);
+        let magnitude = settled(e, &step.magnitude().bounded(0, most), &cx.scratch_long(3));
         let whole = magnitude.over(&by).times(&size);
         let part = magnitude.rest(&by).times(&size).plus(&half);
         let sum = whole.plus(&part.over(&by));
         if whole.fits(Width::Long) && part.fits(Width::Long) && sum.fits(Width::Long) {
             let sum = settled(e, &sum, &cx.scratch_long(3));
             let signed = choose(&relation(&step, "<", &zero), &sum.negated(), &sum);
-            return if known < 0 { signed.negated() } else { signed };
+            let signed = if known < 0 { signed.negated() } else { signed };
+            if step.low > least {
+                return signed;
+            }
+            let product = i128::from(least) * i128::from(known);
+            let exact = (product + product.signum() * i128::from(run / 2)) / i128::from(run);
+            let exact = Value::integer(i64::try_from(exact).unwrap_or(0));
+            return choose(&relation(&step, "<", &Value::integer(least + 1)), &exact, &signed);
         }
     }
     large(cx, "(input - input minimum) x (scaled maximum - scaled minimum)");

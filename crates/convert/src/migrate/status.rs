@@ -49,9 +49,6 @@ impl Context<'_> {
 
     fn needs_computed(&mut self, word: u16) {
         self.status_words.insert(word);
-        if word != 4 {
-            self.condition(Mark::Clock, "the Do-more clock must be set to the time of the original's");
-        }
     }
 
     /// A status bit is read; `Some` when it is no bit of the image.

@@ -4,7 +4,7 @@ use ladder::Instruction;
 
 use super::context::{Context, Convert};
 use super::emit::Contact;
-use super::{bits, compare, control, counters, files, math, moves, sequencer, timers};
+use super::{bits, compare, control, counters, files, interrupts, math, moves, sequencer, timers};
 
 /// One instruction.
 #[derive(Clone, Copy)]
@@ -34,6 +34,7 @@ const TABLES: &[&[Row]] = &[
     files::TABLE,
     sequencer::TABLE,
     control::TABLE,
+    interrupts::TABLE,
 ];
 
 /// The row of a mnemonic.

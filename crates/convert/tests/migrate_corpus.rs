@@ -1,0 +1,99 @@
+//! Every project of the corpus migrated: how many rungs hold, and that every result reads back, balances
+//! and compiles.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use convert::from_rss;
+use convert::migrate::{self, Options, Verdict};
+use ladder::Source;
+
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
+
+fn read(path: &Path) -> Option<ladder::Project> {
+    let project = rss::Project::read(&std::fs::read(path).expect("file"), rss::Mode::Permissive).ok()?;
+    Some(from_rss::project(&project, Source::default()))
+}
+
+/// Programs of which at least 90 % of the rungs have to hold, by a part of their path.
+const NAMED: [&str; 13] = [
+    "LANLOGIX_BR",
+    "SW2012",
+    "SW2014",
+    "SW2084",
+    "TVZ",
+    "Water",
+    "3_pump",
+    "lowpass",
+    "traffic_light_rtc",
+    "PLC/TRAFFIC",
+    "lamp_flash",
+    "lecky",
+    "rslogix500/",
+];
+
+#[test]
+fn rungs_hold() {
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    let mut low = Vec::new();
+    let mut table = Vec::new();
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let name = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
+        let before = std::time::Instant::now();
+        let migration = match migrate::migrate(&project.main, &[], &Options::default()) {
+            Ok(migration) => migration,
+            Err(error) => panic!("{name}: {error}"),
+        };
+        let took = before.elapsed();
+        let rungs = project.main.ladder_files().flat_map(|file| &file.rungs).filter(|rung| !rung.is_end()).count();
+        assert_eq!(migration.rungs.len(), rungs, "{name}: a rung is lost");
+        let text = domore::text::write(&migration.project);
+        let reading = domore::text::read(&text).expect("text");
+        assert!(reading.diagnostics.is_empty(), "{name}: {:?}", reading.diagnostics.first());
+        let balance = domore::stack::check_project(&reading.project);
+        assert!(balance.is_empty(), "{name}: {:?}", balance.first());
+        if let Err(refusals) = domore::engine::Program::compile(&reading.project, &domore::engine::Options::default()) {
+            println!("{name}: {} refusals, first {}", refusals.len(), refusals.first().expect("one"));
+        }
+        for rung in &migration.rungs {
+            if rung.verdict == Verdict::Person {
+                for note in &rung.notes {
+                    let text: String = note.text.chars().filter(|c| !c.is_ascii_digit()).collect();
+                    *reasons.entry(format!("{} {text}", note.mark)).or_default() += 1;
+                }
+            }
+        }
+        let [exact, condition, person] =
+            [Verdict::Exact, Verdict::Condition, Verdict::Person].map(|verdict| migration.count(verdict));
+        let held = 100.0 * (exact + condition) as f64 / rungs.max(1) as f64;
+        let named = NAMED.iter().any(|part| name.contains(part));
+        // `RUNGS_SHOW`, a part of a path, prints what is not exact.
+        if std::env::var("RUNGS_SHOW").is_ok_and(|part| name.contains(&part)) {
+            for rung in migration.rungs.iter().filter(|rung| rung.verdict != Verdict::Exact) {
+                println!("{}:{} {:?}\n   {}", rung.file, rung.rung, rung.notes, rung.original);
+            }
+        }
+        table.push(format!(
+            "{held:5.1} % {exact:5} exact {condition:4} condition {person:4} person {:4} ms {name}",
+            took.as_millis()
+        ));
+        if named && held < 90.0 && rungs > 0 {
+            low.push(name);
+        }
+    }
+    table.sort();
+    for row in &table {
+        println!("{row}");
+    }
+    let mut reasons: Vec<_> = reasons.into_iter().collect();
+    reasons.sort_by_key(|reason| std::cmp::Reverse(reason.1));
+    for (reason, count) in reasons.iter().take(60) {
+        println!("{count:6} {reason}");
+    }
+    assert!(low.is_empty(), "below 90 %: {low:#?}");
+}
