@@ -135,6 +135,11 @@ pub fn from_file(text: &str, line: u32, options: &Options) -> Result<Foreign, Ru
 /// # Errors
 /// The first place of the scenario that does not read, or what keeps the program from running.
 pub fn from_routines(routines: &[Routine], options: &Options) -> Result<Foreign, RunError> {
+    if let [only] = routines
+        && has_heads(&only.text)
+    {
+        return from_file(&only.text, only.line, options);
+    }
     let mut text = String::new();
     // Lines of the text so far, with the routine that begins behind each.
     let mut starts = Vec::new();
@@ -167,13 +172,19 @@ pub fn from_routines(routines: &[Routine], options: &Options) -> Result<Foreign,
     }
 }
 
+/// Whether a ladder brings the heads of its code blocks with it.
+fn has_heads(text: &str) -> bool {
+    let mut words = text.lines().filter_map(|line| line.split_whitespace().next());
+    words.any(|word| CodeKind::from_begin(word).is_some_and(|kind| !matches!(kind, CodeKind::Other { .. })))
+}
+
 fn machine(project: &domore::Project, options: &Options) -> Result<Foreign, RunError> {
     let program = Program::compile(project, options).map_err(|refusals| {
         let refusals = refusals.iter().map(|refusal| Refusal { site: None, why: refusal.to_string() });
         RunError::Refused(refusals.collect())
     })?;
     let named = program.approximations().iter();
-    let approximations = named.map(|found| Approximation { site: None, why: found.why.clone() }).collect();
+    let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
     Ok(Foreign { controller: Box::new(DoMore(Machine::new(program))), approximations })
 }
 
