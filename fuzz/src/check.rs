@@ -225,4 +225,21 @@ pub fn domore_text(bytes: &[u8]) {
             let _ = xref.of_element(element);
         }
     }
+    domore_run(&document.project);
+}
+
+/// Whatever compiles runs in bounds, and its state comes back.
+fn domore_run(project: &domore::Project) {
+    use domore::engine::{Machine, Options, Program, Unsupported};
+    let options = Options { unsupported: Unsupported::Stop, watchdog: 2_000, ..Options::default() };
+    let Ok(program) = Program::compile(project, &options) else { return };
+    let mut machine = Machine::new(program);
+    machine.enter_run();
+    for _ in 0..4 {
+        machine.scan(std::time::Duration::from_millis(70));
+    }
+    let saved = machine.save();
+    machine.restore(&saved).expect("its own state");
+    assert!(machine.save() == saved, "a state does not come back");
+    machine.enter_program();
 }
