@@ -91,6 +91,7 @@ fn lines_of_sections_and_quotes_are_checked() {
 #[test]
 fn no_text_and_too_much_are_refused() {
     assert_eq!(read("PLC X\n  \0").unwrap_err(), Error::NotText { line: 2, column: 3, found: '\0' });
+    assert_eq!(read("PLC X\r\nSTR\r").unwrap_err(), Error::NotText { line: 2, column: 4, found: '\r' });
     assert_eq!(read(&" ".repeat(MAX_TEXT + 1)).unwrap_err(), Error::TooLarge { unit: "bytes", limit: MAX_TEXT });
     assert_eq!(read(&"\n".repeat(MAX_LINES)).unwrap_err(), Error::TooLarge { unit: "lines", limit: MAX_LINES });
 }

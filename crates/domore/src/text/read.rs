@@ -94,8 +94,9 @@ pub fn read(text: &str) -> Result<Reading, Error> {
     if text.bytes().filter(|byte| *byte == b'\n').count() >= MAX_LINES {
         return Err(Error::TooLarge { unit: "lines", limit: MAX_LINES });
     }
+    // A carriage return that no line feed follows is no line end, and nothing else either.
     for (index, line) in text.lines().enumerate() {
-        let odd = |c: &char| c.is_control() && !matches!(c, '\t' | '\r' | '\u{80}'..='\u{9F}');
+        let odd = |c: &char| c.is_control() && !matches!(c, '\t' | '\u{80}'..='\u{9F}');
         if let Some(found) = line.chars().find(odd) {
             let column = line.chars().take_while(|c| !odd(c)).count() + 1;
             return Err(Error::NotText { line: index + 1, column, found });
