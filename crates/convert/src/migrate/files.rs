@@ -213,7 +213,7 @@ fn copy_solid(cx: &mut Context<'_>, e: &mut Emitter, block: Block, from: u32, to
         return;
     }
     if block == Block::Sl {
-        cx.condition(Mark::Text, "strings are copied up to their length; characters behind it are not carried over");
+        cx.condition(Mark::Text, "a string copied as it is stays within the length of a Do-more string");
     }
     let shift = if to > from && to - from < count { to - from } else { count };
     let mut done = 0;
@@ -227,7 +227,9 @@ fn copy_solid(cx: &mut Context<'_>, e: &mut Emitter, block: Block, from: u32, to
 
 fn copy_apart(e: &mut Emitter, block: Block, from: u32, to: u32, count: u32) {
     let (source, target) = (element(block, from), element(block, to));
-    if count == 1 {
+    if block == Block::Sl {
+        e.output("MEMCOPY", [source, target, "0x20000".to_owned(), count.to_string()]);
+    } else if count == 1 {
         e.mov(&source, &target);
     } else if to < from && from - to < count {
         // Downwards over itself: the vendor's help promises this for MEMCOPY.

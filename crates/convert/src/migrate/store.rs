@@ -332,18 +332,30 @@ pub(super) fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Val
     }
     let side = settled(e, &test, &cx.scratch_long(KEPT));
     let side = side.text().to_owned();
+    // 2^32 less or more, in steps that stay inside 32 bits: two of 2^31 - 1, and 2.
+    let (two, whole) = (Value::integer(2), (low, high));
+    let inside = |value: &Value| value.clone().bounded(whole.0, whole.1);
+    let beside = |value: &Value, other: &Value| if minus { value.plus(other) } else { value.minus(other) };
+    let lower = inside(&a.minus(&top).minus(&beside(&top, b)).minus(&two));
+    let higher = if minus {
+        inside(&a.plus(&top).plus(&top.minus(b)).plus(&two))
+    } else {
+        inside(&a.plus(&top).plus(&b.plus(&top)).plus(&two))
+    };
+    let chosen = |limit: &Value, cut: &Value| match &wrap {
+        Wrap::Never => limit.clone(),
+        Wrap::Always => cut.clone(),
+        Wrap::By(bit) => choose(&format!("{bit} == 1"), cut, limit),
+    };
     let mut value = sum.clone().bounded(low, high);
     if sum.low < low {
-        value = choose(&format!("{side} == -1"), &bottom, &value);
+        value = choose(&format!("{side} == -1"), &chosen(&bottom, &higher), &value);
     }
     if sum.high > high {
-        value = choose(&format!("{side} == 1"), &top, &value);
+        value = choose(&format!("{side} == 1"), &chosen(&top, &lower), &value);
     }
-    if wrap != Wrap::Never {
-        cx.condition(
-            Mark::MathRegister,
-            "S:2/14: a 32-bit result beyond its limits keeps its low bits there, here it is limited",
-        );
+    if wrap != Wrap::Never && target.width != Width::Long {
+        cx.condition(Mark::MathRegister, "S:2/14: a 32-bit sum beyond 32 bits, cut to a word, is formed from 32 bits");
     }
     let trap = cx.minor_error_bit(0);
     e.when(|e| {
