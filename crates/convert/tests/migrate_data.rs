@@ -412,6 +412,14 @@ fn the_trap_may_wrap() {
         "NEG N7:0 N7:0",
         "ABS N7:0 N7:0",
         "MOV L9:0 N7:0",
+        "ADD L9:0 1 L9:0",
+        "ADD L9:0 L9:1 L9:2",
+        "ADD L9:0 N7:1 L9:0",
+        "ADD L9:0 -100 L9:0",
+        "SUB L9:0 L9:1 L9:0",
+        "SUB L9:0 100000 L9:1",
+        "SUB 0 L9:0 L9:1",
+        "NEG L9:0 L9:1",
     ] {
         let case = Case { family: MX, wrap: true, rungs: format!("{rung}\n{TRAP}") };
         assert_eq!(run(&case, 100, 5)[0], Verdict::Exact, "{rung}");
