@@ -1,8 +1,11 @@
 //! Data tables a program needs before it can be stored or run.
 
-use ladder::{DataFile, Diagnostic, FileType, Image, IoRange, Severity, Target};
+use std::collections::{BTreeMap, HashMap};
 
-use crate::to_rss::program::addresses;
+use instr::parameters::{Written, element_words, written};
+use ladder::{DataFile, Diagnostic, FileType, Image, IoRange, Severity, Target, TimeBase};
+
+use crate::to_rss::program::{addresses, instructions};
 
 /// Files every processor has, with their names: O, I, S, B, T, C, R, N.
 const STANDARD: [(FileType, &str); 8] = [
@@ -58,9 +61,24 @@ fn joined(lines: &[String]) -> String {
     text
 }
 
-/// Adds the files every processor has and makes tables as large as the program's direct addresses
-/// need. What was added is reported; existing values never change.
+/// Adds the files every processor has, makes tables as large as the program needs, and gives the
+/// elements added the parameters that instructions show for them. What was added is reported; values
+/// that are there never change, but are compared with what the instructions show.
 pub fn complete(image: &mut Image, notes: &mut Vec<Diagnostic>) {
+    let given: Given = image
+        .data_files
+        .iter()
+        .filter(|file| !is_module_file(file) && file.file_type != FileType::Unused)
+        .map(|file| (file.number, file.elements))
+        .collect();
+    add_files(image, &given, notes);
+    parameters(image, &given, notes);
+}
+
+/// Elements of the data files that came with the program, by file number.
+type Given = HashMap<u16, u16>;
+
+fn add_files(image: &mut Image, given: &Given, notes: &mut Vec<Diagnostic>) {
     for ((file_type, name), number) in STANDARD.iter().zip(0u16..) {
         if image.data_files.iter().all(|file| file.number != number || is_module_file(file)) {
             let elements = standard_elements(image, *file_type);
@@ -79,18 +97,30 @@ pub fn complete(image: &mut Image, notes: &mut Vec<Diagnostic>) {
             }
         }
     }
-    let mut needs = std::collections::BTreeMap::new();
-    for address in addresses(image) {
+    // Elements named, and elements that instructions reach from there.
+    let mut needs = BTreeMap::new();
+    for (address, words) in addresses(image) {
         let (Some(file), Some(element)) = (address.file.number(), address.element.number()) else { continue };
         // I/O tables are as large as the slots; function files belong to the controller.
         if address.file_type.has_slots() || address.file_type.is_function_file() {
             continue;
         }
-        let need = needs.entry((address.file_type, file)).or_insert(0u16);
-        *need = (*need).max(element.saturating_add(1));
+        let reached = u16::try_from(words.div_ceil(element_words(address.file_type))).unwrap_or(u16::MAX);
+        let need = needs.entry((address.file_type, file)).or_insert((0u16, 0u16));
+        need.0 = need.0.max(element.saturating_add(1));
+        need.1 = need.1.max(element.saturating_add(reached.max(1)));
     }
-    for ((file_type, number), elements) in needs {
+    for ((file_type, number), (named, reached)) in needs {
         let place = format!("data file {file_type}{number}");
+        // A table that came with the program is as long as its author made it.
+        let elements = if given.contains_key(&number) { named } else { reached };
+        if let Some(have) = given.get(&number).filter(|have| reached > **have && reached > named) {
+            notes.push(Diagnostic {
+                severity: Severity::Warning,
+                place: place.clone(),
+                message: format!("an instruction reaches {reached} elements by its length, the table has {have}"),
+            });
+        }
         match image.data_files.iter_mut().find(|file| file.number == number && !is_module_file(file)) {
             Some(file) if file.file_type == file_type => {
                 if file.elements < elements {
@@ -118,6 +148,93 @@ pub fn complete(image: &mut Image, notes: &mut Vec<Diagnostic>) {
         }
     }
     image.data_files.sort_by_key(|file| (is_module_file(file), file.number));
+}
+
+/// Sets the elements that no table gave to what the first instruction on them shows, and reports
+/// where the others, or a table, differ.
+fn parameters(image: &mut Image, given: &Given, notes: &mut Vec<Diagnostic>) {
+    let mut found: Vec<(String, FileType, u16, u16, Shown)> = Vec::new();
+    for it in instructions(image).flat_map(written).filter(|it| it.element.is_direct()) {
+        let (Some(file), Some(element)) = (it.element.file.number(), it.element.element.number()) else { continue };
+        found.push((it.element.to_string(), it.element.file_type, file, element, Shown::of(&it)));
+    }
+    let mut set: HashMap<(u16, u16), Shown> = HashMap::new();
+    for (place, file_type, number, element, shown) in found {
+        let is_it = |file: &&mut DataFile| file.number == number && file.file_type == file_type;
+        let Some(file) = image.data_files.iter_mut().find(is_it) else { continue };
+        let size = usize::from(file.words_per_element);
+        let Some(words) = file.words.get_mut(usize::from(element) * size..).and_then(|words| words.get_mut(..size))
+        else {
+            continue;
+        };
+        let has_table = given.get(&number).is_some_and(|elements| element < *elements);
+        let (stored, of) = match set.get(&(number, element)) {
+            _ if has_table => (Shown::stored(words, file_type), "the data table holds"),
+            Some(first) => (*first, "an instruction before it shows"),
+            None => {
+                shown.store(words);
+                set.insert((number, element), shown);
+                continue;
+            }
+        };
+        if let Some((severity, differences)) = shown.differences(&stored, file_type) {
+            let wins = if has_table { "the data table counts" } else { "the first one counts" };
+            let message = format!("an instruction shows {differences}; {wins}").replace("{of}", of);
+            notes.push(Diagnostic { severity, place, message });
+        }
+    }
+}
+
+/// Parameters of one element, as an instruction shows them or a table holds them.
+#[derive(Clone, Copy)]
+struct Shown {
+    base: Option<TimeBase>,
+    values: [Option<i64>; 2],
+}
+
+impl Shown {
+    fn of(written: &Written<'_>) -> Shown {
+        Shown { base: written.time_base, values: written.values }
+    }
+
+    fn stored(words: &[u16], file_type: FileType) -> Shown {
+        let word = |index: usize| words.get(index).map(|word| i64::from(*word as i16));
+        let control = words.first().copied().filter(|_| file_type == FileType::T);
+        Shown { base: control.and_then(TimeBase::from_control), values: [word(1), word(2)] }
+    }
+
+    fn store(&self, words: &mut [u16]) {
+        if let (Some(base), Some(control)) = (self.base, words.first_mut()) {
+            *control = *control & !0x0300 | base.control_bits();
+        }
+        for (value, word) in self.values.iter().zip(words.iter_mut().skip(1)) {
+            if let Some(value) = value.and_then(|value| i16::try_from(value).ok()) {
+                *word = value as u16;
+            }
+        }
+    }
+
+    /// What differs from `other`. An accumulator or position alone is only where a program stood.
+    fn differences(&self, other: &Shown, file_type: FileType) -> Option<(Severity, String)> {
+        let names = if file_type == FileType::R { ["LEN", "POS"] } else { ["PRE", "ACC"] };
+        let mut differences = Vec::new();
+        let mut severity = Severity::Note;
+        if let (Some(base), Some(found)) = (self.base, other.base)
+            && base != found
+        {
+            severity = Severity::Warning;
+            differences.push(format!("time base {base} ({{of}} {found})"));
+        }
+        for (index, name) in names.iter().enumerate() {
+            if let [Some(value), Some(found)] = [self.values[index], other.values[index]]
+                && value != found
+            {
+                severity = if index == 0 { Severity::Warning } else { severity };
+                differences.push(format!("{name} {value} ({{of}} {found})"));
+            }
+        }
+        (!differences.is_empty()).then(|| (severity, differences.join(", ")))
+    }
 }
 
 fn note(notes: &mut Vec<Diagnostic>, place: String, message: String) {

@@ -26,6 +26,7 @@
 pub mod exec;
 mod families;
 mod model;
+pub mod parameters;
 pub mod reference;
 mod row;
 mod set;

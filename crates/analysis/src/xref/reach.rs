@@ -68,8 +68,9 @@ impl<'a> Collector<'a> {
                 self.name(by, placed, 0);
                 return self.named_value(by, slot, placed, role);
             }
+            // A length of 0 is not set yet: what the operand names is in use all the same.
+            Reach::Bits { bits: 0, .. } | Reach::Unknown => (OPEN, None),
             Reach::Bits { bits, len } => (bits, len),
-            Reach::Unknown => (OPEN, None),
         };
         if address.element.number().is_none() {
             self.name(by, placed, 0);

@@ -235,33 +235,37 @@ fn address_value(image: &Image, definition: &Definition, address: &Address) -> O
     }
 }
 
-/// Data files that instructions of the image name directly: type, number and highest element, for
-/// tables that must exist before the program can run.
-pub(crate) fn addresses(image: &Image) -> impl Iterator<Item = &ladder::Address> {
-    fn of_operand<'a>(operand: &'a Operand, found: &mut Vec<&'a ladder::Address>) {
+/// Addresses that instructions of the image name directly, each with the words the instruction reaches
+/// from there: for tables that must exist before the program can run.
+pub(crate) fn addresses(image: &Image) -> impl Iterator<Item = (&Address, u32)> {
+    fn of_operand<'a>(operand: &'a Operand, words: u32, found: &mut Vec<(&'a Address, u32)>) {
         match operand {
-            Operand::Address(address) => push(address, found),
+            Operand::Address(address) => push(address, words, found),
             Operand::Expression(expression) => {
                 for operand in expression.operands() {
-                    of_operand(operand, found);
+                    of_operand(operand, 1, found);
                 }
             }
             _ => {}
         }
     }
-    fn push<'a>(address: &'a ladder::Address, found: &mut Vec<&'a ladder::Address>) {
-        found.push(address);
+    fn push<'a>(address: &'a Address, words: u32, found: &mut Vec<(&'a Address, u32)>) {
+        found.push((address, words));
         for inner in address.indirections() {
-            push(inner, found);
+            push(inner, 1, found);
         }
     }
-    let rungs = image.program_files.iter().flat_map(|file| &file.rungs);
-    rungs.flat_map(Rung::instructions).flat_map(|instruction| {
+    instructions(image).flat_map(|instruction| {
         let mut found = Vec::new();
-        for operand in &instruction.operands {
-            of_operand(operand, &mut found);
+        for (index, operand) in instruction.operands.iter().enumerate() {
+            of_operand(operand, instr::parameters::words(instruction, index, image.family()), &mut found);
         }
-        found.retain(|address| !matches!(address.file_type, FileType::Unknown(_)));
+        found.retain(|(address, _)| !matches!(address.file_type, FileType::Unknown(_)));
         found
     })
+}
+
+/// Every instruction of the image, in the order of files and rungs.
+pub(crate) fn instructions(image: &Image) -> impl Iterator<Item = &Instruction> {
+    image.program_files.iter().flat_map(|file| &file.rungs).flat_map(Rung::instructions)
 }

@@ -3,11 +3,11 @@
 use instr::by_mnemonic;
 use instr::exec::function::Function;
 use instr::exec::{coverage, expression};
+use instr::parameters::time_base;
 use ladder::{FileType, Instruction, Operand};
 
 use super::Compiler;
 use super::operand::{Result, unusable};
-use super::tables::time_base;
 use crate::op::*;
 
 impl Compiler<'_> {

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use instr::{Extent, by_mnemonic};
-use ladder::{Address, DataFile, Expression, Family, FileType, Image, Instruction, Number, Operand, TimeBase};
+use instr::parameters;
+use ladder::{Address, DataFile, Expression, Family, FileType, Image, Instruction, Operand};
 
 use super::Compiler;
 use crate::Options;
@@ -108,24 +108,8 @@ const MAX_ELEMENTS: u32 = 1024;
 
 impl Needs {
     fn instruction(&mut self, instruction: &Instruction, family: Family) {
-        let entry = instruction.mnemonic.name().and_then(by_mnemonic);
-        let form = entry.and_then(|entry| entry.form_for(family, instruction.operands.len()));
         for (index, operand) in instruction.operands.iter().enumerate() {
-            let words = form.and_then(|form| form.operands.get(index)).map_or(1, |described| {
-                let count = |index: usize| constant(instruction.operands.get(index)).unwrap_or(1).clamp(1, 4096);
-                let size = |index: usize| size_of(instruction.operands.get(index));
-                match described.extent {
-                    Extent::Elements { length, size_of } => count(length) * size(size_of),
-                    Extent::Steps { length } => (count(length) + 1) * size(index),
-                    Extent::ValueOrSteps { length } if is_file(operand) => (count(length) + 1) * size(index),
-                    Extent::Words { length } => count(length),
-                    Extent::Bits { length } => count(length).div_ceil(16),
-                    Extent::Block { words } => u32::from(words),
-                    _ => 1,
-                }
-            });
-            let words = words.max(block_words(entry.map(|entry| entry.mnemonic), index, operand));
-            self.operand(operand, words);
+            self.operand(operand, parameters::words(instruction, index, family));
         }
     }
 
@@ -160,7 +144,7 @@ impl Needs {
             return;
         }
         let (Some(file), Some(element)) = (address.file.number(), element) else { return };
-        let size = size_of_type(address.file_type);
+        let size = parameters::element_words(address.file_type);
         let last = u32::from(element) + words.div_ceil(size).max(1);
         let need = self.files.entry((address.file_type, file)).or_insert(0);
         *need = (*need).max(last.min(MAX_ELEMENTS));
@@ -202,34 +186,6 @@ impl Needs {
     }
 }
 
-/// Words of a block of integers that an instruction works on from its first operand; what the operand
-/// is called differs by processor, what the block holds does not.
-fn block_words(mnemonic: Option<&str>, index: usize, operand: &Operand) -> u32 {
-    let integers = operand.address().is_some_and(|address| address.file_type == FileType::N);
-    match mnemonic {
-        Some("PID") if index == 0 && integers => instr::exec::process::WORDS as u32,
-        Some("MSG") if integers => 14,
-        _ => 1,
-    }
-}
-
-fn is_file(operand: &Operand) -> bool {
-    operand.address().is_some_and(|address| address.indexed)
-}
-
-fn constant(operand: Option<&Operand>) -> Option<u32> {
-    let value = operand?.constant()?.as_integer()?;
-    u32::try_from(value).ok()
-}
-
-fn size_of(operand: Option<&Operand>) -> u32 {
-    operand.and_then(Operand::address).map_or(1, |address| size_of_type(address.file_type))
-}
-
-fn size_of_type(file_type: FileType) -> u32 {
-    u32::from(file_type.words_per_element().unwrap_or(1)).max(1)
-}
-
 impl Compiler<'_> {
     /// Applies the parameters written in inline rungs; the first instruction on an element decides.
     pub(super) fn parameters(&self, data: &mut [u16]) {
@@ -242,54 +198,21 @@ impl Compiler<'_> {
         let mut done: BTreeSet<u32> = BTreeSet::new();
         let image = self.image;
         for instruction in image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions()) {
-            let name = instruction.mnemonic.name().unwrap_or("");
-            for (element, first, second) in parameter_operands(name) {
-                let location = instruction.operands.get(*element).and_then(Operand::address);
-                let Some(location) = location.and_then(|address| self.layout.locate(address)) else { continue };
+            for written in parameters::written(instruction) {
+                let Some(location) = self.layout.locate(written.element) else { continue };
                 if !done.insert(location.word) {
                     continue;
                 }
                 let at = location.word as usize;
-                if matches!(name, "TON" | "TOF" | "RTO")
-                    && let Some(base) = time_base(instruction.operands.get(1))
-                    && let Some(word) = data.get_mut(at)
-                {
+                if let (Some(base), Some(word)) = (written.time_base, data.get_mut(at)) {
                     *word = *word & !0x0300 | base.control_bits();
                 }
-                for (offset, operand) in [(1, Some(*first)), (2, *second)] {
-                    let value = operand.and_then(|index| instruction.operands.get(index)).and_then(Operand::constant);
-                    if let (Some(value), Some(word)) = (value.and_then(|c| c.as_integer()), data.get_mut(at + offset)) {
+                for (offset, value) in (1..).zip(written.values) {
+                    if let (Some(value), Some(word)) = (value, data.get_mut(at + offset)) {
                         *word = value as u16;
                     }
                 }
             }
         }
-    }
-}
-
-/// Elements whose parameters an instruction shows: the operand of the element, then those of the
-/// values of its words 1 and 2.
-fn parameter_operands(name: &str) -> &'static [(usize, usize, Option<usize>)] {
-    match name {
-        "TON" | "TOF" | "RTO" => &[(0, 2, Some(3))],
-        "CTU" | "CTD" => &[(0, 1, Some(2))],
-        "BSL" | "BSR" => &[(1, 3, None)],
-        "FFL" | "LFL" | "FFU" | "LFU" | "SQL" => &[(2, 3, Some(4))],
-        "SQO" | "SQC" => &[(3, 4, Some(5))],
-        "FBC" | "DDT" => &[(3, 4, Some(5)), (6, 7, Some(8))],
-        "ARD" | "ARL" | "AWA" | "AWT" => &[(2, 3, None)],
-        _ => &[],
-    }
-}
-
-/// The time base written as an operand.
-pub(super) fn time_base(operand: Option<&Operand>) -> Option<TimeBase> {
-    match operand? {
-        Operand::Constant(constant) => TimeBase::from_text(constant.text()).or(match constant.number() {
-            Number::Integer(1) => Some(TimeBase::Second),
-            _ => None,
-        }),
-        Operand::Text(text) => TimeBase::from_text(text),
-        _ => None,
     }
 }
