@@ -177,9 +177,9 @@ fn parameters(image: &mut Image, given: &Given, notes: &mut Vec<Diagnostic>) {
                 continue;
             }
         };
-        if let Some((severity, differences)) = shown.differences(&stored, file_type) {
+        if let Some((severity, differences)) = shown.differences(&stored, of, file_type) {
             let wins = if has_table { "the data table counts" } else { "the first one counts" };
-            let message = format!("an instruction shows {differences}; {wins}").replace("{of}", of);
+            let message = format!("an instruction shows {differences}; {wins}");
             notes.push(Diagnostic { severity, place, message });
         }
     }
@@ -215,7 +215,7 @@ impl Shown {
     }
 
     /// What differs from `other`. An accumulator or position alone is only where a program stood.
-    fn differences(&self, other: &Shown, file_type: FileType) -> Option<(Severity, String)> {
+    fn differences(&self, other: &Shown, of: &str, file_type: FileType) -> Option<(Severity, String)> {
         let names = if file_type == FileType::R { ["LEN", "POS"] } else { ["PRE", "ACC"] };
         let mut differences = Vec::new();
         let mut severity = Severity::Note;
@@ -223,14 +223,14 @@ impl Shown {
             && base != found
         {
             severity = Severity::Warning;
-            differences.push(format!("time base {base} ({{of}} {found})"));
+            differences.push(format!("time base {base} ({of} {found})"));
         }
-        for (index, name) in names.iter().enumerate() {
-            if let [Some(value), Some(found)] = [self.values[index], other.values[index]]
+        for (name, (value, found)) in names.into_iter().zip(self.values.into_iter().zip(other.values)) {
+            if let (Some(value), Some(found)) = (value, found)
                 && value != found
             {
-                severity = if index == 0 { Severity::Warning } else { severity };
-                differences.push(format!("{name} {value} ({{of}} {found})"));
+                severity = if matches!(name, "PRE" | "LEN") { Severity::Warning } else { severity };
+                differences.push(format!("{name} {value} ({of} {found})"));
             }
         }
         (!differences.is_empty()).then(|| (severity, differences.join(", ")))

@@ -104,7 +104,7 @@ fn a_text_becomes_a_project() {
         [
             (Severity::Warning, "line 38"),
             (Severity::Error, "file 2 > rung 1"),
-            (Severity::Warning, "DATA XYZ11"),
+            (Severity::Error, "DATA XYZ11"),
             (Severity::Error, "FORCE I:09")
         ]
     );

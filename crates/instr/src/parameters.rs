@@ -137,7 +137,8 @@ mod tests {
             let instruction = instruction(text);
             let found: Vec<_> =
                 written(&instruction).map(|it| (it.element.to_string(), it.time_base, it.values)).collect();
-            let expected: Vec<_> = expected.into_iter().map(|(at, base, values)| (at.to_owned(), base, values)).collect();
+            let expected: Vec<_> =
+                expected.into_iter().map(|(at, base, values)| (at.to_owned(), base, values)).collect();
             assert_eq!(found, expected, "{text}");
         }
     }

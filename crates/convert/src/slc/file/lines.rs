@@ -9,6 +9,7 @@ pub(super) struct Lines<'a> {
     number: u32,
     diagnostics: Vec<Diagnostic>,
     unreported: usize,
+    unreported_severity: Severity,
 }
 
 /// A text that is no `.SLC` file at all has as many faults as lines; nobody reads that many.
@@ -16,7 +17,13 @@ const MOST_DIAGNOSTICS: usize = 1000;
 
 impl<'a> Lines<'a> {
     pub(super) fn new(text: &'a str) -> Self {
-        Lines { rest: text.lines().peekable(), number: 1, diagnostics: Vec::new(), unreported: 0 }
+        Lines {
+            rest: text.lines().peekable(),
+            number: 1,
+            diagnostics: Vec::new(),
+            unreported: 0,
+            unreported_severity: Severity::Note,
+        }
     }
 
     /// The current line without its line end.
@@ -35,12 +42,21 @@ impl<'a> Lines<'a> {
     }
 
     pub(super) fn warn(&mut self, line: u32, message: impl Into<String>) {
+        self.push(Severity::Warning, line, message.into());
+    }
+
+    /// Something that is in the text and will not be in the project.
+    pub(super) fn lost(&mut self, line: u32, message: impl Into<String>) {
+        self.push(Severity::Error, line, message.into());
+    }
+
+    fn push(&mut self, severity: Severity, line: u32, message: String) {
         if self.diagnostics.len() + 1 >= MOST_DIAGNOSTICS {
             self.unreported += 1;
+            self.unreported_severity = self.unreported_severity.max(severity);
             return;
         }
-        let place = format!("line {line}");
-        self.diagnostics.push(Diagnostic { severity: Severity::Warning, place, message: message.into() });
+        self.diagnostics.push(Diagnostic { severity, place: format!("line {line}"), message });
     }
 
     /// Moves the current line to `kept` because nothing explains it.
@@ -48,13 +64,13 @@ impl<'a> Lines<'a> {
         let line = self.number;
         let Some(text) = self.next() else { return };
         push_line(kept, text.trim_end());
-        self.warn(line, format!("{why}, found `{}`; the line is kept as it is", shortened(text)));
+        self.lost(line, format!("{why}, found `{}`; the project does not hold this line", shortened(text)));
     }
 
     pub(super) fn into_diagnostics(mut self) -> Vec<Diagnostic> {
         if self.unreported > 0 {
             self.diagnostics.push(Diagnostic {
-                severity: Severity::Warning,
+                severity: self.unreported_severity,
                 place: "file".to_owned(),
                 message: format!("{} more lines deviate", self.unreported),
             });

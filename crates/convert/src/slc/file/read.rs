@@ -122,7 +122,8 @@ fn rack(lines: &mut Lines<'_>, sections: &mut Vec<Section>) {
             Some(slot) => slots.push(slot),
             None => {
                 let expected = "expected `SLOT n catalogue % text % SCAN_IN n SCAN_OUT n ..`";
-                lines.warn(number, format!("{expected}, found `{}`; the line is kept as it is", shortened(text)));
+                let message = format!("{expected}, found `{}`; the project does not hold this slot", shortened(text));
+                lines.lost(number, message);
                 if !slots.is_empty() {
                     sections.push(Section::Rack(std::mem::take(&mut slots)));
                 }
@@ -282,6 +283,7 @@ fn other(lines: &mut Lines<'_>) -> Section {
     }
     let kept = kept.trim_end().to_owned();
     let last = first.saturating_add(u32::try_from(kept.lines().count()).unwrap_or(u32::MAX)).saturating_sub(1);
-    lines.warn(first, format!("expected a section, found `{}`; kept up to line {last}", shortened(example)));
+    let found = shortened(example);
+    lines.lost(first, format!("expected a section, found `{found}`; the project holds nothing up to line {last}"));
     Section::Other(kept)
 }

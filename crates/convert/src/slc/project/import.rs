@@ -39,9 +39,8 @@ struct Importer {
 /// A text can have as many faults as lines; nobody reads more than this.
 const MOST_NOTES: usize = 1000;
 
-/// Program and data files are numbered to 255, and no controller has as many slots. Numbers up to
-/// here are taken as they stand, larger ones are damage.
-const LARGEST_NUMBER: u16 = 999;
+/// Program and data files are numbered to here, and no controller has as many slots.
+const LARGEST_NUMBER: u16 = 255;
 
 impl Importer {
     fn note(&mut self, severity: Severity, place: impl Into<String>, message: impl Into<String>) {
@@ -132,6 +131,15 @@ impl Importer {
                     });
                     break;
                 }
+                if rung.is_end() && index + 1 < section.rungs.len() {
+                    let message = format!(
+                        "line {}: END ends the program file, and {} more rungs follow it",
+                        lines.line.max(1),
+                        section.rungs.len() - index - 1
+                    );
+                    self.note(Severity::Error, format!("file {number} > rung {index}"), message);
+                }
+                self.timers(&rung, lines.line.max(1), number, index);
                 rung.comment = lines.title.as_ref().map(|block| comment(block, number, rungs.len()));
                 self.open_instructions(&rung, number, rungs.len());
                 rungs.push(rung);
@@ -161,6 +169,30 @@ impl Importer {
         files
     }
 
+    /// Time bases and presets that no timer can have.
+    fn timers(&mut self, rung: &Rung, line: u32, file: u16, index: usize) {
+        for instruction in rung.instructions().filter(|it| matches!(it.mnemonic.name(), Some("TON" | "TOF" | "RTO"))) {
+            let shown = |operand: usize| instruction.operands.get(operand).map(ToString::to_string).unwrap_or_default();
+            let (element, base) = (shown(0), instruction.operands.get(1));
+            let is_number = |operand: Option<&ladder::Operand>| operand.is_some_and(|it| it.constant().is_some());
+            let mut wrong = Vec::new();
+            if is_number(base) && instr::parameters::time_base(base).is_none() {
+                wrong.push(format!("expected a time base of 0.001, 0.01 or 1.0, found {}", shown(1)));
+            }
+            for (operand, name) in [(2, "preset"), (3, "accumulator")] {
+                let value = instruction.operands.get(operand).and_then(ladder::Operand::constant);
+                if value.is_some_and(|value| value.as_integer().is_none_or(|value| i16::try_from(value).is_err())) {
+                    wrong.push(format!("expected a {name} up to 32767, found {}", shown(operand)));
+                }
+            }
+            let name = instruction.mnemonic.name().unwrap_or_default();
+            for message in wrong {
+                let message = format!("line {line}: {name} {element}: {message}");
+                self.note(Severity::Error, format!("file {file} > rung {index}"), message);
+            }
+        }
+    }
+
     /// Instructions whose words could not be matched with their box.
     fn open_instructions(&mut self, rung: &Rung, file: u16, index: usize) {
         for instruction in rung.instructions() {
@@ -187,7 +219,7 @@ impl Importer {
             }
             let Some(file_type) = FileType::from_letters(&section.letters) else {
                 self.note(
-                    Severity::Warning,
+                    Severity::Error,
                     place,
                     format!("data files of type {} are not known; the section is left out", section.letters),
                 );

@@ -161,7 +161,8 @@ fn element(data: &mut Data, lines: &mut Lines<'_>, layout: Layout, ends: &impl F
             data.words.append(&mut words);
         }
         _ => {
-            lines.warn(number, "expected an element with as many values as the one before; its lines are kept");
+            let message = "expected an element with as many values as the one before; the project does not hold it";
+            lines.lost(number, message);
             // An empty line keeps the lines of one element from those of the next.
             if !data.extra.is_empty() {
                 data.extra.push('\n');
