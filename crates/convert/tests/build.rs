@@ -116,3 +116,63 @@ fn what_a_project_would_lack_is_an_error_with_its_line() {
     let section = "START Bul.1766 % x %\n\nLADDRE 2\n\nDATA N7:0\n% N7:0 % 1\n";
     assert!(errors(section)[0].starts_with("line 3: expected a section, found `LADDRE 2`"), "{:?}", errors(section));
 }
+
+/// The family's confidence and the notes about the processor of a text with this START line.
+fn processor(start: &str) -> Result<(Option<u16>, ladder::Confidence, Vec<String>), String> {
+    let project = convert::slc::project::read(&format!("START {start}\n\nLADDER 2\nSOR EOR\n")).expect("an SLC text");
+    let built = convert::to_rss::project_file(&project).map_err(|error| error.to_string())?;
+    let file = rss::Project::read(&built.file.write().expect("written"), Mode::Strict).expect("read");
+    let processor = from_rss::project(&file, Source::default()).main.processor;
+    let notes = built.notes.iter().filter(|note| note.place == "processor").map(|note| note.message.clone());
+    Ok((processor.model, processor.family_confidence, notes.collect()))
+}
+
+#[test]
+fn another_controller_is_never_written_silently() {
+    use ladder::Confidence::{Proven, Weak};
+    let named = processor("Bul.1766 % Bul.1766     MicroLogix 1400 Series A %");
+    assert_eq!(named, Ok((Some(62), Proven, Vec::new())));
+    for (start, model, said) in [
+        ("Bul.1766 % Bul.1766 %", 63, "written as Bul.1766 MicroLogix 1400 Series B, not MicroLogix 1400 Series A"),
+        ("Bul.1761 % Bul.1761 %", 28, "written as Bul.1761 MicroLogix 1000, not MicroLogix 1000 DH-485"),
+        ("1747-L40A % 1747-L40A %", 8, "1747-L40A does not tell the model"),
+    ] {
+        let (code, confidence, notes) = processor(start).expect("a known family");
+        assert_eq!((code, confidence), (Some(model), Weak), "{start}");
+        assert!(notes.iter().any(|note| note.contains(said)), "{start}: {notes:#?}");
+    }
+    for start in ["1747-L20A % 1747-L20A %", "1747-L20A", "1747-L532 % 1747-L532B 5/03 %"] {
+        let why = processor(start).expect_err("refused");
+        assert!(why.contains("no model number is known") && why.contains(&start[..9]), "{why}");
+    }
+}
+
+#[test]
+fn a_processor_of_unknown_model_keeps_its_number() {
+    let (mut project, _) = built(&format!("{START}SOR XIC B3:0/0 OTE B3:0/1 EOR\n"));
+    let processor = &mut project.main.processor;
+    (processor.model, processor.catalog, processor.name) = (Some(20), None, None);
+    (processor.family, processor.reported_type) = (ladder::Family::Unknown, Some(0x9F));
+    "HOST!AB_ETH-1\\10.0.0.1".clone_into(&mut processor.route);
+    project.main.io = ladder::IoConfiguration::default();
+    let text = convert::json::to_json_text(&project);
+    let project = convert::json::from_json(&text).expect("a document");
+    let built = convert::to_rss::project_file(&project).expect("a project file");
+    let file = rss::Project::read(&built.file.write().expect("written"), Mode::Permissive).expect("read");
+    let back = from_rss::project(&file, Source::default()).main;
+    assert_eq!((back.processor.model, back.processor.reported_type), (Some(20), Some(0x9F)));
+    assert_eq!(back.processor.route, "HOST!AB_ETH-1\\10.0.0.1");
+    assert_eq!(back.ladder_files().count(), 1);
+    assert!(built.notes.iter().any(|note| note.message.contains("model 20 is not known")), "{:#?}", built.notes);
+}
+
+#[test]
+fn what_a_file_will_not_hold_is_told() {
+    let (mut project, _) = built(&format!("{START}SOR JSR 9 EOR\n"));
+    project.online = Some(project.main.clone());
+    let built = convert::to_rss::project_file(&project).expect("a project file");
+    let notes: Vec<String> = built.notes.iter().map(|note| format!("{}: {}", note.place, note.message)).collect();
+    for expected in ["online image: is not written", "file 2 > rung 0: JSR 9: there is no such program file"] {
+        assert!(notes.iter().any(|note| note.starts_with(expected)), "{expected}: {notes:#?}");
+    }
+}

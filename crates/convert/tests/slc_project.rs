@@ -102,7 +102,7 @@ fn a_text_becomes_a_project() {
     assert_eq!(
         wrong,
         [
-            (Severity::Warning, "line 38"),
+            (Severity::Error, "line 38"),
             (Severity::Error, "file 2 > rung 1"),
             (Severity::Error, "DATA XYZ11"),
             (Severity::Error, "FORCE I:09")

@@ -37,6 +37,12 @@ pub(crate) fn processor(record: &rss::processor::Processor<'_>) -> Processor {
     }
 }
 
+/// The model of a project whose text told the family alone.
+pub(super) fn chosen(processor: &mut Processor) {
+    processor.family_confidence = processor.family_confidence.min(Confidence::Weak);
+    "chosen when the project was built: its text did not tell the model".clone_into(&mut processor.evidence);
+}
+
 pub(crate) fn io(record: &rss::io::IoConfiguration<'_>) -> IoConfiguration {
     let packed = match &record.layout {
         IoLayout::Packed(packed) => Some(packed),

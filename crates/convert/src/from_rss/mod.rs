@@ -32,12 +32,15 @@ pub fn project(file: &rss::Project, source: Source) -> Project {
     for deviation in file.deviations() {
         reader.diagnostics.push(diagnostic(Severity::Error, deviation));
     }
-    let main = reader.image(ImageKind::Main);
+    let mut main = reader.image(ImageKind::Main);
     let has = |kind| file.images().any(|image| image == kind);
     let online = has(ImageKind::Online).then(|| reader.image(ImageKind::Online));
     let autosave = has(ImageKind::Autosave).then(|| reader.image(ImageKind::Autosave));
     let revision_notes = reader.revision_notes();
     let source = reader.source(source);
+    if source.application == crate::to_rss::CHOSEN {
+        configuration::chosen(&mut main.processor);
+    }
     Project { source, main, online, autosave, revision_notes, diagnostics: reader.diagnostics }
 }
 

@@ -4,12 +4,12 @@ use ladder::{Image, IoRange, Processor, Slot};
 use rss::channel::{Channel, ChannelConfiguration};
 use rss::io::{IoConfiguration, IoLayout, IoWords, PackedIo, PackedModule, SLOTS, SlotIo, SlotRecord};
 use rss::processor::{Driver, Model};
-use rss::tables::{self, BaseUnit, IoForm, ModuleIdentity, ProcessorModel};
+use rss::tables::{self, BaseUnit, IoForm, ModuleIdentity};
 use rss::{Error, Result, Text};
 
-use super::{Notes, text};
+use super::{Notes, Target, text};
 
-pub(super) fn processor<'a>(processor: &'a Processor, model: &ProcessorModel) -> Result<rss::processor::Processor<'a>> {
+pub(super) fn processor<'a>(processor: &'a Processor, model: &Target) -> Result<rss::processor::Processor<'a>> {
     let name = if processor.driver.is_empty() { "(unknown)" } else { &processor.driver };
     let driver = Driver::unconnected(name).to_stored();
     let driver = driver.map_err(|c| Error::Unwritable(format!("driver name: {c:?} is not in code page 1252")))?;
@@ -18,10 +18,11 @@ pub(super) fn processor<'a>(processor: &'a Processor, model: &ProcessorModel) ->
     let tail: &[u8] = if matches!(model.code, 62 | 63) { &[0; 5] } else { &[] };
     Ok(rss::processor::Processor {
         model: code,
-        reported: code,
+        reported: processor.reported_type.map_or(code, Model),
         driver: Text::from_bytes(&driver).into_owned(),
         name: text(&processor.project_name)?,
         main_program: text(&processor.main_program)?,
+        route: text(&processor.route)?,
         program_id: processor.program_id.unwrap_or(0),
         after_program_id: 1,
         tail,
@@ -29,7 +30,7 @@ pub(super) fn processor<'a>(processor: &'a Processor, model: &ProcessorModel) ->
     })
 }
 
-pub(super) fn io(image: &Image, model: &ProcessorModel, notes: &mut Notes) -> Result<IoConfiguration<'static>> {
+pub(super) fn io(image: &Image, model: &Target, notes: &mut Notes) -> Result<IoConfiguration<'static>> {
     let layout = match model.io_form {
         IoForm::Packed => IoLayout::Packed(packed(image, model)?),
         IoForm::Slots => IoLayout::Slots(slots(image, model)?),
@@ -41,7 +42,7 @@ pub(super) fn io(image: &Image, model: &ProcessorModel, notes: &mut Notes) -> Re
 }
 
 /// On-board words of the packed models: in, out.
-fn onboard_words(model: &ProcessorModel) -> (u16, u16) {
+fn onboard_words(model: &Target) -> (u16, u16) {
     match model.code {
         60 | 61 => (6, 4),
         62 | 63 => (8, 6),
@@ -50,7 +51,7 @@ fn onboard_words(model: &ProcessorModel) -> (u16, u16) {
 }
 
 /// Configuration words of the base unit before any filter or latch is set.
-fn base_configuration(model: &ProcessorModel) -> Vec<u16> {
+fn base_configuration(model: &Target) -> Vec<u16> {
     let (length, first, tail) = match model.code {
         57 => (8, 0x0106, 1),
         60 => (8, 0x0106, 1),
@@ -77,7 +78,7 @@ fn words(slot: &Slot) -> IoWords {
     }
 }
 
-fn packed(image: &Image, model: &ProcessorModel) -> Result<PackedIo> {
+fn packed(image: &Image, model: &Target) -> Result<PackedIo> {
     let base = image.io.slots.iter().find(|slot| slot.number == 0);
     let onboard = base.map_or_else(
         || {
@@ -148,7 +149,7 @@ fn unknown_module(slot: &Slot) -> Error {
     Error::Unwritable(format!("slot {}: the stored identity of module {name} is not known", slot.number))
 }
 
-fn slots(image: &Image, model: &ProcessorModel) -> Result<SlotIo<'static>> {
+fn slots(image: &Image, model: &Target) -> Result<SlotIo<'static>> {
     const EMPTY: SlotRecord = SlotRecord {
         input_bytes: 0,
         first_input: 0,
@@ -199,7 +200,7 @@ fn id_code(slot: &Slot) -> Result<u16> {
 }
 
 /// Blank channels of the sizes the model has.
-pub(super) fn channel_bytes(model: &ProcessorModel) -> Vec<Vec<u8>> {
+pub(super) fn channel_bytes(model: &Target) -> Vec<Vec<u8>> {
     let words: &[usize] = match model.code {
         57 => &[44, 44],
         60 => &[44, 68],
@@ -211,7 +212,7 @@ pub(super) fn channel_bytes(model: &ProcessorModel) -> Vec<Vec<u8>> {
     words.iter().map(|count| vec![0; 2 * count]).collect()
 }
 
-pub(super) fn channels<'a>(model: &ProcessorModel, bytes: &'a [Vec<u8>]) -> ChannelConfiguration<'a> {
+pub(super) fn channels<'a>(model: &Target, bytes: &'a [Vec<u8>]) -> ChannelConfiguration<'a> {
     // Models that keep their channel settings in the status file have eleven zero bytes here.
     let tail: &[u8] = if bytes.is_empty() { &[0; 11] } else { &[] };
     let channels = bytes.iter().map(|bytes| Channel::from_bytes(bytes)).collect();

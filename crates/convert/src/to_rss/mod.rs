@@ -10,13 +10,13 @@ mod configuration;
 mod data;
 mod documentation;
 pub(crate) mod program;
+mod target;
 
-use ladder::{Diagnostic, Family, Image, ProgramFileKind, Project, Severity};
+use ladder::{Diagnostic, Image, ProgramFileKind, Project, Severity};
 use rss::compiler::Compiler;
 use rss::monitors::{MonitorKind, Monitors, Trends};
 use rss::small::{self, PowerConfiguration, RcpHolder, RevisionNotes, SourceControl, Version};
 use rss::summary::NewSummary;
-use rss::tables::{self, ProcessorModel};
 use rss::{Error, ImageKind, Record, Result, StreamKind, Text};
 
 /// A project file made from a model, and what it could not carry.
@@ -28,6 +28,9 @@ pub struct Built {
     pub notes: Vec<Diagnostic>,
 }
 
+pub(crate) use target::CHOSEN;
+use target::{Target, target};
+
 /// The RSLogix version whose format the writer follows: the one most known projects share.
 const FORMAT_VERSION: [&str; 3] = ["8.30.00.16", "8.30.00", "16"];
 
@@ -38,14 +41,15 @@ const FORMAT_VERSION: [&str; 3] = ["8.30.00.16", "8.30.00", "16"];
 /// A processor without a known model number, and values a field of the format cannot hold.
 pub fn project_file(project: &Project) -> Result<Built> {
     let mut image = project.main.clone();
-    let model = model(&image)?;
     let mut notes = Notes(Vec::new());
+    let model = target(project, &image, &mut notes)?;
     crate::tables::complete(&mut image, &mut notes.0);
-    let file = streams(project, &image, model, &mut notes)?;
+    not_carried(project, &mut notes);
+    let file = streams(project, &image, &model, &mut notes)?;
     Ok(Built { file, notes: notes.0 })
 }
 
-fn streams(project: &Project, image: &Image, model: &ProcessorModel, notes: &mut Notes) -> Result<rss::Project> {
+fn streams(project: &Project, image: &Image, model: &Target, notes: &mut Notes) -> Result<rss::Project> {
     let mut writer = ProjectWriter { file: rss::Project::new() };
     writer.record(StreamKind::Processor, &configuration::processor(&image.processor, model)?)?;
     writer.record(StreamKind::IoConfiguration, &configuration::io(image, model, notes)?)?;
@@ -90,17 +94,29 @@ fn streams(project: &Project, image: &Image, model: &ProcessorModel, notes: &mut
         writer.payload(constant.kind, &constant.payload())?;
     }
     writer.payload(StreamKind::Contents, &small::CONTENTS)?;
-    writer.payload(StreamKind::SummaryInformation, &summary(image, revision).write()?)?;
+    writer.payload(StreamKind::SummaryInformation, &summary(image, model, revision).write()?)?;
     Ok(writer.file)
 }
 
-fn summary(image: &Image, revision: u32) -> NewSummary<'_> {
+/// What a project file could hold and this one will not.
+fn not_carried(project: &Project, notes: &mut Notes) {
+    for (image, name) in [(&project.online, "online image"), (&project.autosave, "automatic save")] {
+        if image.is_some() {
+            notes.warning(name, "is not written: the file has the offline program alone");
+        }
+    }
+    if !project.main.processor.route.is_empty() {
+        notes.note("processor", "the settings of the driver are written as of one that was never connected");
+    }
+}
+
+fn summary<'a>(image: &'a Image, model: &Target, revision: u32) -> NewSummary<'a> {
     let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     let programs = image.program_files.iter().filter(|file| file.kind != ProgramFileKind::Unused).count();
     let data = image.data_files.iter().filter(|file| file.file_type != ladder::FileType::Unused).count();
     NewSummary {
         processor_name: &image.processor.project_name,
-        application: "rungs",
+        application: if model.chosen { CHOSEN } else { "rungs" },
         revision,
         program_id: image.processor.program_id.unwrap_or(0),
         instruction_words: None,
@@ -140,24 +156,6 @@ impl Notes {
     fn push(&mut self, severity: Severity, place: impl Into<String>, message: impl Into<String>) {
         self.0.push(Diagnostic { severity, place: place.into(), message: message.into() });
     }
-}
-
-/// The model to write: the stored number if there is one, else by name, else the newest known one
-/// of the family.
-fn model(image: &Image) -> Result<&'static ProcessorModel> {
-    let processor = &image.processor;
-    let by_number = processor.model.and_then(tables::processor_model);
-    let named =
-        |model: &&ProcessorModel| processor.name.as_deref().is_some_and(|name| name.eq_ignore_ascii_case(model.name));
-    let of_family = |model: &&ProcessorModel| Family::from_id(model.family) == Some(processor.family);
-    let all = || tables::PROCESSOR_MODELS.iter();
-    by_number.or_else(|| all().find(named)).or_else(|| all().rev().find(of_family)).ok_or_else(|| {
-        Error::Unwritable(format!(
-            "no model number is known for processor {} ({})",
-            processor.name.as_deref().unwrap_or("of unknown name"),
-            processor.family
-        ))
-    })
 }
 
 /// Text in the code page of project files.

@@ -52,6 +52,10 @@ impl ProgramWriter<'_> {
         }
         let mut rungs = Vec::with_capacity(file.rungs.len() + 1);
         for (index, rung) in file.rungs.iter().enumerate() {
+            if rung.is_end() && index + 1 < file.rungs.len() {
+                let more = file.rungs.len() - index - 1;
+                return Err(Error::Unwritable(format!("{place}: {more} rungs after END in rung {index}")));
+            }
             rungs.push(self.rung(rung, file.number, index)?);
         }
         let ends = file.rungs.last().is_some_and(Rung::is_end);
@@ -119,6 +123,11 @@ impl ProgramWriter<'_> {
         let Some(opcode) = form.opcode else {
             return Err(Error::Unwritable(format!("{place}: the operation code of {name} is not known")));
         };
+        for number in instruction.operands.iter().filter_map(called) {
+            if self.image.ladder_files().all(|file| file.number != number) {
+                self.notes.warning(place, format!("{name} {number}: there is no such program file"));
+            }
+        }
         let message = instruction.message.as_deref().map(message::record).transpose()?;
         let lacks_setup = definition.mnemonic == "MSG" && message.is_none();
         let code = match code::compile(definition, form, instruction) {
@@ -141,6 +150,14 @@ impl ProgramWriter<'_> {
             message: message.map(Box::new),
             ..program::Instruction::default()
         })
+    }
+}
+
+/// The program file an operand names.
+fn called(operand: &Operand) -> Option<u16> {
+    match operand {
+        Operand::ProgramFile(number) => Some(*number),
+        _ => None,
     }
 }
 

@@ -37,8 +37,10 @@ const NAMES: &[(&str, Family)] = &[
 
 /// The processor a START line names.
 pub(super) fn processor(start: &Start, project_name: &str) -> Processor {
-    // The description repeats the catalogue number.
-    let name = start.description.strip_prefix(&start.catalog).unwrap_or(&start.description).trim();
+    // The description repeats the catalogue number, at times with letters behind it (`1747-L532B`),
+    // which belong to the name.
+    let repeated = start.description.strip_prefix(&start.catalog);
+    let name = repeated.filter(|rest| rest.is_empty() || rest.starts_with(' ')).unwrap_or(&start.description).trim();
     let model = tables::PROCESSOR_MODELS.iter().find(|model| model.name.eq_ignore_ascii_case(name));
     let words = format!("{} {name}", start.catalog).to_ascii_uppercase();
     let family = NAMES.iter().find(|(part, _)| words.contains(part)).map(|(_, family)| *family);
@@ -60,6 +62,7 @@ pub(super) fn processor(start: &Start, project_name: &str) -> Processor {
 pub(super) fn start(processor: &Processor) -> Start {
     let catalog = processor.catalog.clone().unwrap_or_else(|| UNKNOWN.to_owned());
     let description = match &processor.name {
+        Some(name) if name.starts_with(&catalog) => name.clone(),
         Some(name) => format!("{catalog:<12} {name}"),
         None => catalog.clone(),
     };
@@ -125,12 +128,19 @@ mod tests {
                 Some("MicroLogix 1400 Series A"),
                 Some(62),
             ),
-            ("1747-L532", "1747-L532C/D  5/03 CPU - 16K Mem.", Family::Slc503, Some("C/D  5/03 CPU - 16K Mem."), None),
+            (
+                "1747-L532",
+                "1747-L532C/D  5/03 CPU - 16K Mem.",
+                Family::Slc503,
+                Some("1747-L532C/D  5/03 CPU - 16K Mem."),
+                None,
+            ),
             ("1747-L552", "", Family::Slc505, None, None),
             ("unknown", "unknown", Family::Unknown, None, None),
         ] {
             let read = processor(&Start { catalog: catalog.to_owned(), description: description.to_owned() }, "P");
             assert_eq!((read.family, read.name.as_deref(), read.model), (family, name, model), "{catalog}");
+            assert_eq!(processor(&super::start(&read), "P"), read, "{catalog}");
         }
     }
 
