@@ -85,8 +85,9 @@ pub(crate) struct Campaign<'c, B: Side> {
 const MOST_ENTRIES: usize = 3000;
 /// Scans from power-up to a state that is gone on from.
 const DEEPEST: usize = 30_000;
-/// Scans of a long wait at most.
+/// Scans of a long wait, and the part of all scans it may take if that is more.
 const LONGEST_WAIT: u64 = 600;
+const PART_OF_ALL: u64 = 20;
 /// Times before a scan that are tried, in milliseconds.
 const PACES: [u32; 5] = [1, 7, 10, 13, 50];
 /// Longest time before a scan in a long wait, in microseconds. A controller's watchdog ends far longer ones.
@@ -344,9 +345,7 @@ impl<'c, B: Side> Campaign<'c, B> {
     /// Towards a goal that is still open.
     fn aim(&mut self) {
         let missing: Vec<usize> = (0..self.goals.all.len())
-            .filter(|index| {
-                self.goals.all.get(*index).is_some_and(|goal| !goal.reached && goal.impossible.is_none())
-            })
+            .filter(|index| self.goals.all.get(*index).is_some_and(|goal| !goal.reached && goal.impossible.is_none()))
             .collect();
         let Some(goal) = self.random.pick(&missing).and_then(|index| self.goals.all.get(*index)).cloned() else {
             return self.wander();
@@ -364,9 +363,7 @@ impl<'c, B: Side> Campaign<'c, B> {
     }
 
     fn is_reached(&self, wanted: &super::goals::Goal) -> bool {
-        self.goals.all.iter().any(|goal| {
-            goal.location == wanted.location && goal.kind == wanted.kind && goal.reached
-        })
+        self.goals.all.iter().any(|goal| goal.location == wanted.location && goal.kind == wanted.kind && goal.reached)
     }
 
     fn carry_out(&mut self, plan: &Plan) {
@@ -418,8 +415,9 @@ impl<'c, B: Side> Campaign<'c, B> {
         let coarse = (total.saturating_sub(6 * pace) / 24_000).saturating_mul(1000);
         let coarse = coarse.clamp(pace, LONGEST_PACE.max(pace));
         let mut left = total.saturating_sub(4 * pace);
+        let most = LONGEST_WAIT.max(self.budget / PART_OF_ALL);
         let mut scans = 0;
-        while left > 0 && scans < LONGEST_WAIT && self.goes_on() {
+        while left > 0 && scans < most && self.goes_on() {
             let dt = left.min(coarse);
             self.scan(false, u32::try_from(dt).unwrap_or(u32::MAX));
             left -= dt;
@@ -497,9 +495,7 @@ pub(crate) fn compare<B: Side>(both: &Both<B>, pairs: &Pairs, buffers: &mut [Vec
         (None, None) => pairs.difference(&both.a, &both.b, buffers).map(Difference::Value),
         // Stopped alike: outputs are off on both; data is what the fault left.
         (Some(_), Some(_)) => pairs.output_on(&both.b).map(Difference::Value),
-        (Some(why), None) => {
-            Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code)))
-        }
+        (Some(why), None) => Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code))),
         (None, Some(why)) => Some(Difference::OtherStopped(why)),
     }
 }

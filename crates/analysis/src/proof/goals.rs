@@ -237,19 +237,6 @@ impl Goals {
     pub(crate) fn rungs_open(&self) -> bool {
         self.left.iter().flatten().any(|left| *left > 0)
     }
-
-    /// Goals that can still be reached.
-    pub(crate) fn missing(&self) -> impl Iterator<Item = &Goal> {
-        self.all.iter().filter(|goal| !goal.reached && goal.impossible.is_none())
-    }
-
-    /// Reached and reachable goals of a kind.
-    pub(crate) fn count(&self, of: impl Fn(GoalKind) -> bool) -> (usize, usize) {
-        let wanted = self.all.iter().filter(|goal| of(goal.kind));
-        wanted.filter(|goal| goal.reached || goal.impossible.is_none()).fold((0, 0), |(reached, all), goal| {
-            (reached + usize::from(goal.reached), all + 1)
-        })
-    }
 }
 
 impl Trace for Goals {
@@ -274,7 +261,9 @@ impl Trace for Goals {
             return;
         }
         *open &= !new;
-        if let Some(left) = self.left.get_mut(usize::from(flow.file)).and_then(|left| left.get_mut(usize::from(flow.rung))) {
+        if let Some(left) =
+            self.left.get_mut(usize::from(flow.file)).and_then(|left| left.get_mut(usize::from(flow.rung)))
+        {
             *left = left.saturating_sub(new.count_ones());
         }
         let numbers = self.numbers.get(slot).copied().unwrap_or([NONE; 4]);

@@ -197,7 +197,8 @@ fn pointer_limit(xref: &CrossReference<'_>, address: &Address, accesses: &[Acces
     let image = xref.image();
     let mut limit = u32::from(u16::MAX);
     for access in pointers {
-        let rung = image.program_file(access.location.file).and_then(|file| file.rungs.get(access.location.rung as usize));
+        let rung =
+            image.program_file(access.location.file).and_then(|file| file.rungs.get(access.location.rung as usize));
         let instruction = rung.and_then(|rung| rung.instructions().nth(access.location.instruction as usize));
         for operand in instruction.iter().flat_map(|it| &it.operands).filter_map(Operand::address) {
             if !operand.indirections().any(|inner| inner == address) {

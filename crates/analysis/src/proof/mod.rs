@@ -10,6 +10,7 @@
 //! mapped, not converted or never reached is listed and never counts as equal.
 
 mod campaign;
+mod fates;
 mod goals;
 mod inputs;
 mod minimize;
@@ -19,8 +20,8 @@ mod report;
 mod scenario;
 mod side;
 mod solve;
-mod tape;
 mod taint;
+mod tape;
 
 use std::collections::BTreeSet;
 
@@ -36,9 +37,10 @@ use scenario::Preset;
 use solve::Solver;
 
 pub use campaign::Difference;
+pub use fates::fates;
 pub use goals::{Goal, GoalKind};
 pub use pairs::{Mapping, Mismatch};
-pub use report::{Coverage, Report, RungCoverage, Verdict};
+pub use report::{Coverage, NOT_MODELLED, Report, RungCoverage, Verdict};
 pub use scenario::{Counterexample, Named};
 pub use side::{DoMore, Kind, Side, Slc};
 
@@ -55,8 +57,10 @@ pub struct Options {
     pub original: Named,
     /// How scenarios name the other program.
     pub other: Named,
-    /// Readings where documentation of the original ends.
+    /// Readings where documentation of SLC 500 and MicroLogix ends.
     pub choices: sim::Choices,
+    /// Readings where documentation of Do-more ends.
+    pub domore_choices: domore::choices::Choices,
 }
 
 impl Default for Options {
@@ -68,6 +72,7 @@ impl Default for Options {
             original: Named::default(),
             other: Named { family: Some("do-more".to_owned()), ..Named::default() },
             choices: sim::Choices::default(),
+            domore_choices: domore::choices::Choices::default(),
         }
     }
 }
@@ -105,7 +110,8 @@ pub fn prove_slc(original: &Image, other: &Image, map: Option<&[Mapping]>, optio
 }
 
 /// Compares an SLC 500 or MicroLogix program with a Do-more program. `fates` is what the migration says of
-/// each rung of the original; without it a rung that went missing can be seen in behaviour only.
+/// each rung of the original (see [`fates()`] for one that is read from its text); without it a rung that went
+/// missing can be seen in behaviour only, and the report says so.
 pub fn prove_domore(
     original: &Image,
     other: &domore::Project,
@@ -113,7 +119,8 @@ pub fn prove_domore(
     fates: Option<&[RungFate]>,
     options: &Options,
 ) -> Report {
-    let program = domore::engine::Program::compile(other, &domore::engine::Options::default());
+    let settings = domore::engine::Options { choices: options.domore_choices, ..Default::default() };
+    let program = domore::engine::Program::compile(other, &settings);
     let program = program.map_err(|refusals| {
         refusals.iter().map(|refusal| format!("the other program cannot be run: {refusal}")).collect::<Vec<_>>()
     });
@@ -154,6 +161,9 @@ fn prove<B: Side>(
     let xref = CrossReference::build(image, &image.documentation);
     let mut report = Report::empty(options);
     report.approximations = [approximations(own.iter().map(ToString::to_string)), others];
+    if image.data_files.iter().any(|file| file.has_forces()) {
+        report.notes.push("the original holds forces: they were left out".to_owned());
+    }
     let persons = rungs(image, fates, &mut report);
     let tainted = taint::tainted(image, &a, &persons).unwrap_or_else(|| {
         report.incomparable.push("which rungs run at all depends on rungs that were left to a person".to_owned());
@@ -191,7 +201,10 @@ fn prove<B: Side>(
 
 /// Checks that every rung has a fate; answers those left to a person.
 fn rungs(image: &Image, fates: Option<&[RungFate]>, report: &mut Report) -> BTreeSet<(u16, u32)> {
-    let Some(fates) = fates else { return BTreeSet::new() };
+    let Some(fates) = fates else {
+        report.notes.push("which rung came from which is not known: a missing rung shows in behaviour only".to_owned());
+        return BTreeSet::new();
+    };
     let known: BTreeSet<(u16, u32)> = fates.iter().map(|fate| (fate.file, fate.rung)).collect();
     for file in image.ladder_files() {
         for (number, rung) in (0..).zip(&file.rungs) {
@@ -231,8 +244,14 @@ fn start<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs)
 }
 
 /// A Monday before noon.
-const DATE: [(&str, u16, u16, u32); 6] =
-    [("Year", 37, 0, 2024), ("Month", 38, 1, 4), ("Day", 39, 2, 15), ("Hour", 40, 3, 11), ("Minute", 41, 4, 59), ("Second", 42, 5, 30)];
+const DATE: [(&str, u16, u16, u32); 6] = [
+    ("Year", 37, 0, 2024),
+    ("Month", 38, 1, 4),
+    ("Day", 39, 2, 15),
+    ("Hour", 40, 3, 11),
+    ("Minute", 41, 4, 59),
+    ("Second", 42, 5, 30),
+];
 
 fn date<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs) -> Vec<Preset> {
     let rtc = inputs.all.iter().any(|input| input.a.0.file_type == FileType::RTC);

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use super::Options;
 use super::campaign::{Campaign, Difference};
 use super::goals::{Goal, GoalKind};
 use super::pairs::Pairs;
 use super::scenario::Counterexample;
 use super::side::Side;
-use super::Options;
 
 /// The result of a proof run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -104,6 +104,8 @@ pub struct Report {
     pub conditions: Vec<String>,
     /// Addresses the program uses that cannot be compared, with why.
     pub unmapped: Vec<(String, String)>,
+    /// What a reader must know besides.
+    pub notes: Vec<String>,
     /// What the simulation of the original and of the other program only approximates.
     pub approximations: [Vec<String>; 2],
 }
@@ -135,6 +137,7 @@ impl Report {
             persons: Vec::new(),
             conditions: Vec::new(),
             unmapped: Vec::new(),
+            notes: Vec::new(),
             approximations: [Vec::new(), Vec::new()],
         }
     }
@@ -262,11 +265,10 @@ impl fmt::Display for Report {
         let goal = |goal: &Goal| format!("{} {} {}", goal.location, goal.text, goal.kind.as_str());
         let missing: Vec<String> = self.rungs().iter().flat_map(|rung| &rung.missing).map(goal).collect();
         list(f, "not reached", &missing)?;
-        let argued: Vec<String> = self
-            .impossible_goals()
-            .map(|it| format!("{}: {}", goal(it), it.impossible.unwrap_or_default()))
-            .collect();
+        let argued: Vec<String> =
+            self.impossible_goals().map(|it| format!("{}: {}", goal(it), it.impossible.unwrap_or_default())).collect();
         list(f, "cannot be reached", &argued)?;
+        list(f, "note", &self.notes)?;
         list(f, "the original is only approximated", &self.approximations[0])?;
         list(f, "the other program is only approximated", &self.approximations[1])?;
         list(f, "not exercised by any run", &NOT_MODELLED.map(str::to_owned))

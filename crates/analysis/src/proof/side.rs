@@ -119,11 +119,7 @@ impl Side for Slc {
         let first = (at >> 4) as usize;
         let own = self.machine.data().get(first..first + words.len()).unwrap_or_default();
         own.len() == words.len()
-            && if mask == u16::MAX {
-                own == words
-            } else {
-                own.iter().zip(words).all(|(a, b)| (a ^ b) & mask == 0)
-            }
+            && if mask == u16::MAX { own == words } else { own.iter().zip(words).all(|(a, b)| (a ^ b) & mask == 0) }
     }
 
     fn text(&self, at: u32, into: &mut Vec<u8>) {

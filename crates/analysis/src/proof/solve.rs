@@ -74,8 +74,7 @@ impl<'a> Solver<'a> {
             by_place.insert(at, index);
             kinds.push(kind);
         }
-        let mut solver =
-            Solver { image, bits: HashMap::new(), words: HashMap::new(), inputs: by_place, kinds };
+        let mut solver = Solver { image, bits: HashMap::new(), words: HashMap::new(), inputs: by_place, kinds };
         for (location, instruction) in crate::instructions(image) {
             let (file, rung, number) = (location.file, location.rung, location.instruction);
             let writer = |does| Writer { file, rung, instruction: number, does };

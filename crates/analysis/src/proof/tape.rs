@@ -1,7 +1,5 @@
 //! What was done to both sides, scan by scan.
 
-use std::time::Duration;
-
 /// One scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Head {
@@ -74,11 +72,6 @@ impl Tape {
     pub(crate) fn changes(&self) -> usize {
         self.sets.len()
     }
-
-    /// Simulated time.
-    pub(crate) fn time(&self) -> Duration {
-        self.heads.iter().map(|head| Duration::from_micros(head.dt.into())).sum()
-    }
 }
 
 #[cfg(test)]
@@ -97,6 +90,6 @@ mod tests {
         let sets: Vec<_> = tape.iter().map(|(_, sets)| sets.to_vec()).collect();
         assert_eq!(sets, [vec![], vec![(1, 1), (2, 7)], vec![(1, 0)]]);
         assert_eq!(tape.first(2).changes(), 2);
-        assert_eq!(tape.time(), Duration::from_millis(10));
+        assert_eq!(tape.get(1).map(|scan| scan.0.dt), Some(10_000));
     }
 }

@@ -1,0 +1,216 @@
+//! `rungs prove`: two programs side by side.
+
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use analysis::proof::{
+    Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Report, Verdict, fates, prove_domore, prove_slc,
+};
+use convert::AnyProject;
+use convert::migrate::map_file::{self, MapRow};
+use ladder::Severity;
+use serde_json::{Value, json};
+
+use super::{MOST_BYTES, file_name, read_file};
+use crate::args::ProveArguments;
+use crate::output::{Error, Outcome, printable};
+
+/// Most bytes of an address map.
+const MOST_MAP: usize = 64 << 20;
+
+pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
+    let (first, second) = match (open(&arguments.original), open(&arguments.other)) {
+        (Ok(first), Ok(second)) => (first, second),
+        (first, second) => {
+            for why in [first.err(), second.err()].into_iter().flatten() {
+                eprintln!("{}", printable(&why));
+            }
+            return Ok(Outcome::Unreadable);
+        }
+    };
+    let AnyProject::Rslogix(original) = first else {
+        let name = arguments.original.display();
+        return Err(Error::Use(format!("{name}: the original must be an SLC 500 or MicroLogix program")));
+    };
+    let map = match arguments.map.as_deref().map(mappings).transpose() {
+        Ok(map) => map,
+        Err(why) => {
+            eprintln!("{}", printable(&why));
+            return Ok(Outcome::Unreadable);
+        }
+    };
+    let folder = arguments.out.clone().unwrap_or_default();
+    let mut options = Options {
+        scans: arguments.scans,
+        seed: arguments.seed,
+        choices: arguments.simulation.choices(),
+        domore_choices: arguments.simulation.do_more(),
+        original: Named { program: beside(&arguments.original, &folder), family: None },
+        ..Options::default()
+    };
+    options.other.program = beside(&arguments.other, &folder);
+    let started = std::time::Instant::now();
+    let report = match &second {
+        AnyProject::Rslogix(other) => {
+            options.other.family = None;
+            prove_slc(&original.main, &other.main, map.as_deref(), &options)
+        }
+        AnyProject::Domore(document) => {
+            let Some(map) = map else {
+                return Err(Error::Use("--map is needed: the address map `rungs migrate` wrote".to_owned()));
+            };
+            prove_domore(&original.main, &document.project, &map, fates(&document.project).as_deref(), &options)
+        }
+    };
+    let seconds = started.elapsed().as_secs_f64();
+    if let Some(folder) = &arguments.out {
+        write(&report, folder)?;
+    }
+    let mut out = std::io::stdout().lock();
+    if arguments.json {
+        let names = [&arguments.original, &arguments.other].map(|path| path.display().to_string());
+        writeln!(out, "{}", describe(&report, &names))?;
+    } else {
+        write!(out, "{}", printable(&report.to_string()))?;
+        if std::io::stderr().is_terminal() {
+            eprintln!("{:.0} scan pairs a second", report.scans as f64 / seconds.max(1e-9));
+        }
+    }
+    Ok(outcome(&report))
+}
+
+/// How a proof counts: anything but "no difference found" is a finding.
+pub fn outcome(report: &Report) -> Outcome {
+    match report.verdict() {
+        Verdict::NoDifference => Outcome::Done,
+        Verdict::Different | Verdict::NotComparable => Outcome::Finding,
+    }
+}
+
+/// A program that was read whole: a proof of half a program would prove nothing.
+fn open(path: &Path) -> Result<AnyProject, String> {
+    let named = |why: String| format!("{}: {why}", path.display());
+    let bytes = read_file(path, MOST_BYTES).map_err(named)?;
+    let project =
+        convert::open_any(&bytes, &file_name(path), rss::Mode::Permissive).map_err(|e| named(e.to_string()))?;
+    let worst = match &project {
+        AnyProject::Rslogix(project) => {
+            let errors = project.diagnostics.iter().find(|found| found.severity == Severity::Error);
+            errors.map(|found| format!("{}: {}", found.place, found.message))
+        }
+        AnyProject::Domore(document) => {
+            let errors = document.diagnostics.iter().find(|found| found.problem.severity() == Severity::Error);
+            errors.map(ToString::to_string)
+        }
+    };
+    match worst {
+        Some(worst) => Err(named(format!("not all of it could be read: {worst}"))),
+        None => Ok(project),
+    }
+}
+
+fn mappings(path: &Path) -> Result<Vec<Mapping>, String> {
+    let named = |why: String| format!("{}: {why}", path.display());
+    let bytes = read_file(path, MOST_MAP).map_err(named)?;
+    let text = String::from_utf8(bytes).map_err(|_| named("not UTF-8 text".to_owned()))?;
+    let rows = map_file::read(&text).map_err(|error| named(error.to_string()))?;
+    Ok(of_rows(&rows))
+}
+
+/// The rows that place data; helpers have no counterpart in the original.
+pub fn of_rows(rows: &[MapRow]) -> Vec<Mapping> {
+    let placed = rows.iter().filter(|row| !row.slc.is_empty() && !row.slc.starts_with("helper"));
+    let mapping = |row: &MapRow| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() };
+    placed.map(mapping).collect()
+}
+
+/// A path as a scenario in `folder` names it.
+pub fn beside(path: &Path, folder: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let (path, folder) = (absolute(path), absolute(folder));
+    let shared = path.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    let mut relative: PathBuf = folder.components().skip(shared).map(|_| "..").collect();
+    relative.extend(path.components().skip(shared));
+    // Nothing in common, as on another drive: only the whole path leads there.
+    let found = if shared == 0 { path } else { relative };
+    found.to_string_lossy().replace('\\', "/")
+}
+
+/// Writes the report and, if the programs differ, a scenario for each of them.
+pub fn write(report: &Report, folder: &Path) -> Result<(), Error> {
+    let failed = |path: &Path, error: std::io::Error| Error::Use(format!("{}: {error}", path.display()));
+    std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    let mut files = vec![("proof.txt", report.to_string())];
+    if let Some((_, example)) = &report.found {
+        files.push(("original.toml", example.original.clone()));
+        files.push(("converted.toml", example.other.clone()));
+    }
+    for (name, text) in files {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|error| failed(&path, error))?;
+    }
+    Ok(())
+}
+
+/// The report as JSON.
+pub fn describe(report: &Report, names: &[String; 2]) -> Value {
+    let coverage = |found: Coverage| json!({"reached": found.reached, "all": found.all, "percent": found.percent()});
+    let goal = |goal: &Goal| {
+        json!({
+            "file": goal.location.file, "rung": goal.location.rung, "instruction": goal.location.instruction,
+            "text": goal.text, "what": goal.kind.as_str(), "impossible": goal.impossible,
+        })
+    };
+    let rungs: Vec<Value> = report
+        .rungs()
+        .iter()
+        .map(|rung| {
+            json!({
+                "file": rung.file, "rung": rung.rung, "reached": rung.coverage.reached, "all": rung.coverage.all,
+                "missing": rung.missing.iter().map(goal).collect::<Value>(),
+            })
+        })
+        .collect();
+    let pairs = |all: &[(String, String)]| -> Value {
+        all.iter().map(|(address, why)| json!({"address": address, "why": why})).collect()
+    };
+    let found = report.found.as_ref().map(|(_, example)| {
+        json!({
+            "what": example.what, "scans": example.scans, "changes": example.changes,
+            "original": example.original, "other": example.other,
+        })
+    });
+    json!({
+        "schema": "rungs.proof/1",
+        "original": names[0],
+        "other": names[1],
+        "verdict": report.verdict().as_str(),
+        "seed": report.seed,
+        "scans": report.scans,
+        "stretches": report.episodes,
+        "time_s": report.time.as_secs_f64(),
+        "mode_changes": report.mode_changes,
+        "stopped_alike": report.stops,
+        "inputs": report.inputs,
+        "compared_words": report.compared,
+        "not_compared_words": report.not_compared,
+        "coverage": {
+            "rung_conditions": coverage(report.conditions_covered()),
+            "done": coverage(report.coverage(|kind| matches!(kind, GoalKind::Done | GoalKind::NotDone))),
+            "boundaries": coverage(report.coverage(|kind| {
+                matches!(kind, GoalKind::Equal | GoalKind::JustBelow | GoalKind::JustAbove)
+            })),
+        },
+        "rungs": rungs,
+        "impossible": report.impossible_goals().map(goal).collect::<Value>(),
+        "difference": found,
+        "not_comparable": report.incomparable,
+        "missing_rungs": report.missing_rungs,
+        "persons": report.persons,
+        "conditions": report.conditions,
+        "unmapped": pairs(&report.unmapped),
+        "notes": report.notes,
+        "approximations": {"original": report.approximations[0], "other": report.approximations[1]},
+        "not_exercised": NOT_MODELLED,
+    })
+}
