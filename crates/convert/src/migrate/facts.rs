@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ladder::{Address, FileType, Image, Instruction, Operand, Place};
 
+use super::ranges::Ranges;
+
 /// Uses of one data file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FileUse {
@@ -30,6 +32,8 @@ pub struct Facts {
     /// Timers whose PRE or ACC something but the timer instructions writes: file and element; `None` is
     /// the whole file.
     timers_written: BTreeSet<(u16, Option<u16>)>,
+    /// Timers something but their instruction changes in any way, as above.
+    timers_changed: BTreeSet<(u16, Option<u16>)>,
     /// How many timer instructions each timer has.
     timers: BTreeMap<(u16, u16), usize>,
 }
@@ -37,7 +41,7 @@ pub struct Facts {
 impl Facts {
     /// Reads all rungs of an image.
     pub fn of(image: &Image) -> Facts {
-        let mut facts = Facts::default();
+        let mut facts = Facts { ranges: Ranges::of(image), ..Facts::default() };
         for instruction in image.program_files.iter().flat_map(|file| &file.rungs).flat_map(|rung| rung.instructions())
         {
             if let Some(name) = instruction.mnemonic.name() {
@@ -51,7 +55,7 @@ impl Facts {
         facts
     }
 
-    /// Notes timers whose words an instruction writes.
+    /// Notes timers whose words or bits something but their own instruction changes.
     fn timer_writes(&mut self, instruction: &Instruction) {
         let name = instruction.mnemonic.name().unwrap_or_default();
         if matches!(name, "TON" | "TOF" | "RTO") {
@@ -62,20 +66,27 @@ impl Facts {
             }
             return;
         }
-        if name == "RES" {
-            return;
-        }
         let form = instr::by_mnemonic(name).and_then(|known| known.forms.first());
         for (index, operand) in instruction.operands.iter().enumerate() {
             let Some(address) = operand.address().filter(|address| address.file_type == FileType::T) else { continue };
             let writes = form.and_then(|form| form.operands.get(index)).is_none_or(|operand| operand.role.writes());
-            if !writes || address.bit.is_some() {
-                continue;
+            let Some(file) = address.file.number().filter(|_| writes) else { continue };
+            let whole = address.indexed || (address.word.is_none() && address.bit.is_none() && name != "RES");
+            let element = address.element.number().filter(|_| !whole);
+            self.timers_changed.insert((file, element));
+            if address.bit.is_none() && name != "RES" {
+                self.timers_written.insert((file, element));
             }
-            let Some(file) = address.file.number() else { continue };
-            let whole = address.indexed || address.word.is_none();
-            self.timers_written.insert((file, address.element.number().filter(|_| !whole)));
         }
+    }
+
+    /// Nothing but its one instruction changes this timer: PRE is a constant, EN, TT, DN and ACC follow
+    /// the rung.
+    pub fn timer_is_plain(&self, file: u16, element: u16) -> bool {
+        !self.any_file.contains(&FileType::T)
+            && !self.timers_changed.contains(&(file, None))
+            && !self.timers_changed.contains(&(file, Some(element)))
+            && self.timer_instructions(file, element) == 1
     }
 
     /// How many timer instructions this timer has.
@@ -138,6 +149,12 @@ impl Facts {
     /// I/O and module words the program names: type, slot, word; used as words, as bits.
     pub fn io(&self) -> impl Iterator<Item = ((FileType, u16, u16), (bool, bool))> {
         self.io.iter().map(|(key, usage)| (*key, *usage))
+    }
+
+    /// The word at a direct address stays between the two, whatever the program does.
+    pub fn stays_within(&self, address: &Address, low: i32, high: i32) -> bool {
+        let (lowest, highest) = self.ranges.word(address);
+        lowest >= low && highest <= high
     }
 
     /// The program names this word of the status file.

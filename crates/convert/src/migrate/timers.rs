@@ -1,8 +1,9 @@
 //! TON, TOF and RTO.
 //!
-//! Timers are written in registers and bits: EN, TT, DN and ACC change where the original changes them,
-//! ACC stops at PRE, PRE and ACC are words that anything may read and write, and all of it survives a
-//! stop. The time comes from one free-running timer box.
+//! A TON that nothing else touches, in a rung of every scan, becomes a `TMR` box with EN, TT, DN and ACC
+//! written behind it. All others are written in registers and bits: EN, TT, DN and ACC change where the
+//! original changes them, ACC stops at PRE, PRE and ACC are words that anything may read and write, and all
+//! of it survives a stop. Their time comes from one free-running timer box.
 
 use ladder::{FileType, Instruction, Operand, TimeBase};
 
@@ -134,7 +135,11 @@ fn negative(context: &mut Context<'_>, instruction: &Instruction) {
     let (Some(file), Some(element)) = (address.file.number(), address.element.number()) else { return };
     let stored = context.image.data_file(FileType::T, file).and_then(|file| file.timer(element));
     let negative = stored.is_some_and(|timer| timer.pre < 0 || timer.acc < 0);
-    if negative || context.facts.timer_is_written(file, element) {
+    let stays = |word| {
+        let word = address.clone().with_word(word);
+        context.facts.stays_within(&word, 0, i32::from(i16::MAX))
+    };
+    if negative || context.facts.timer_is_written(file, element) && !(stays(1) && stays(2)) {
         let text = format!("PRE and ACC of {address} can be written and must not be negative (fault 0034)");
         context.condition(Mark::TimerBase, text);
     }
@@ -163,7 +168,49 @@ fn time_on(t: &Timer, e: &mut Emitter) {
     });
 }
 
+/// A TON whose timer nothing else changes, in a rung of every scan: a timer box keeps the time, EN, TT,
+/// DN and ACC follow it. `false`: it is another one, nothing was appended.
+fn plain_on_delay(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -> Converted<bool> {
+    let address = address(instruction, 0)?;
+    let (Some(file), Some(element)) = (address.file.number(), address.element.number()) else { return Ok(false) };
+    let stored = context.image.data_file(FileType::T, file).and_then(|file| file.timer(element));
+    let preset = stored.map_or(0, |timer| timer.pre);
+    if context.conditional || preset < 1 || !context.facts.timer_is_plain(file, element) {
+        return Ok(false);
+    }
+    let base = time_base(context, instruction)?.milliseconds();
+    let Some(milliseconds) = i32::try_from(base).ok().and_then(|base| base.checked_mul(preset.into())) else {
+        return Ok(false);
+    };
+    let parts = Parts::of(context, instruction, FileType::T)?;
+    let (en, tt, dn) = (parts.bit(context, EN)?, parts.bit(context, TT)?, parts.bit(context, DN)?);
+    let (pre, acc) = (parts.preset(context)?, parts.accumulated(context)?);
+    let name = parts.name().replace(':', "_");
+    let timer = context.helper(Block::T, &name, &format!("{}: its time", parts.name()));
+    let done = format!("{timer}.Done");
+    e.output("TMR", [timer.clone(), milliseconds.to_string()]);
+    e.set(&en);
+    let ticks = if base == 1 { format!("{timer}.Acc") } else { format!("{timer}.Acc / {base}") };
+    e.math(&acc, &format!("IF({ticks} > {pre}, {pre}, {ticks})"));
+    e.when(|e| {
+        e.and(&done);
+        e.hold(&dn);
+    });
+    e.when(|e| {
+        e.and_not(&done);
+        e.hold(&tt);
+    });
+    e.invert();
+    e.reset(&en);
+    e.mov("0", &acc);
+    e.invert();
+    Ok(true)
+}
+
 fn on_delay(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -> Converted {
+    if plain_on_delay(context, e, instruction)? {
+        return Ok(());
+    }
     negative(context, instruction);
     let t = Timer::of(context, e, instruction)?;
     // Stopped in mid-timing it starts again from 0.
