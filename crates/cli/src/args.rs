@@ -66,6 +66,23 @@ pub enum Command {
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\
                             Exit code 0: all met; 1: an expectation not met or a program refused; 3: a scenario or program that cannot be read.")]
     Test(TestArguments),
+    /// Converts a program for another controller: text to import, address map, report per rung
+    #[command(after_help = "Whether Do-more Designer imports what this command writes is UNTESTED: no copy of it was \
+                            available. The report's first lines list every form that no export of Designer shows. Test \
+                            without machinery before use.\n\n\
+                            Example: rungs migrate conveyor.RSS --to domore --out conveyor_domore\n         \
+                            rungs migrate conveyor.RSS --to domore --out again --map conveyor_domore/address-map.csv --prove\n\n\
+                            Exit code 0: every rung converted; 1: rungs need a person, or a proof found a difference; 2: bad use; \
+                            3: unreadable. See docs/migration.md.")]
+    Migrate(MigrateArguments),
+    /// Runs two programs side by side with the same inputs and compares them after every scan
+    #[command(
+        after_help = "Example: rungs prove conveyor.RSS out/conveyor.txt --map out/map.csv --out proof\n         \
+                            rungs prove conveyor_old.RSS conveyor.RSS --scans 1000000\n\n\
+                            Exit code 0: no difference found within the coverage reported; 1: different, or not comparable in whole or \
+                            in part; 2: bad use; 3: a program or map that cannot be read. See docs/proof.md for what a verdict means."
+    )]
+    Prove(ProveArguments),
 }
 
 /// Which copy of the program a project holds to work on.
@@ -318,6 +335,80 @@ pub struct TestArguments {
     pub json: bool,
     #[command(flatten)]
     pub simulation: Simulation,
+}
+
+#[derive(Args)]
+pub struct ProveArguments {
+    /// The original: a project, SLC text or JSON project
+    #[arg(value_name = "A")]
+    pub original: PathBuf,
+    /// The other program: Do-more text, or another project or SLC text
+    #[arg(value_name = "B")]
+    pub other: PathBuf,
+    /// The address map `rungs migrate` wrote; between two SLC programs every address means itself without one
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+    /// Scans of both programs
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    pub scans: u64,
+    /// Start of the random sequence: the same seed gives the same run
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for the report and, if the programs differ, for a scenario of each
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// JSON on one line
+    #[arg(long)]
+    pub json: bool,
+    #[command(flatten)]
+    pub simulation: Simulation,
+}
+
+#[derive(Args)]
+pub struct MigrateArguments {
+    /// A project, SLC text or JSON project
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// The controller family to convert to
+    #[arg(long, value_enum, value_name = "FAMILY")]
+    pub to: Family,
+    /// Folder to write to; made if it does not exist
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// An address map written before and edited: its choices are kept
+    #[arg(long, value_name = "MAP")]
+    pub map: Option<PathBuf>,
+    /// Leave to a person what needs text forms that were never seen to pass through Designer
+    #[arg(long)]
+    pub only_confirmed: bool,
+    /// Run both programs side by side afterwards, see `rungs prove`
+    #[arg(long)]
+    pub prove: bool,
+    /// With --prove: scans of both programs
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    pub scans: u64,
+    /// With --prove: start of the random sequence
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Replace files that exist in the folder
+    #[arg(long, visible_alias = "force")]
+    pub overwrite: bool,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// Which copy of the program
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+    /// JSON on one line
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What a program is converted to.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Family {
+    /// AutomationDirect Do-more and BRX, as text for Do-more Designer
+    Domore,
 }
 
 #[derive(Args)]

@@ -6,6 +6,8 @@ mod domore;
 mod export;
 mod info;
 mod junit;
+mod migrate;
+mod prove;
 mod run;
 mod show;
 mod test;
@@ -39,6 +41,8 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Build(arguments) => build::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::Migrate(arguments) => migrate::run(&arguments),
+        Command::Prove(arguments) => prove::run(&arguments),
     }
 }
 
@@ -57,6 +61,19 @@ impl Opened {
             ImageChoice::Online => self.project.online.as_ref().unwrap_or(&self.project.main),
             ImageChoice::Autosave => self.project.autosave.as_ref().unwrap_or(&self.project.main),
         }
+    }
+
+    /// Says so and answers `true` when the project does not hold the image that was asked for.
+    fn lacks_image(&self) -> bool {
+        let missing = match self.choice {
+            ImageChoice::Online => self.project.online.is_none(),
+            ImageChoice::Autosave => self.project.autosave.is_none(),
+            ImageChoice::Main => false,
+        };
+        if missing {
+            eprintln!("{}: the project holds no such image", self.path.display());
+        }
+        missing
     }
 
     /// The documentation shown with the image: the online image has none of its own.
@@ -213,13 +230,7 @@ fn one_project(
     mut out: &mut dyn Write,
     work: &mut impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
-    let missing = match opened.choice {
-        ImageChoice::Online => opened.project.online.is_none(),
-        ImageChoice::Autosave => opened.project.autosave.is_none(),
-        ImageChoice::Main => false,
-    };
-    if missing {
-        eprintln!("{}: the project holds no such image", opened.path.display());
+    if opened.lacks_image() {
         return Ok(Outcome::Finding);
     }
     let mut outcome = work(opened, &mut out)?;
