@@ -36,6 +36,8 @@ pub struct Facts {
     timers_changed: BTreeSet<(u16, Option<u16>)>,
     /// How many timer instructions each timer has.
     timers: BTreeMap<(u16, u16), usize>,
+    /// Values words can have.
+    ranges: Ranges,
 }
 
 impl Facts {

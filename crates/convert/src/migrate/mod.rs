@@ -34,6 +34,7 @@ mod moves;
 pub mod operand;
 mod plan;
 mod project;
+mod ranges;
 pub mod report;
 mod rung;
 mod scale;
@@ -338,7 +339,7 @@ fn notes(image: &Image, context: &Context<'_>) -> Vec<Note> {
                     the last rung does the same with HALT; restart by PROGRAM and RUN";
         notes.push(Note::new(Mark::Fault, text));
     }
-    if context.reads_rtc || context.status_words.iter().any(|word| *word > 4) {
+    if context.reads_rtc || context.status_words.iter().any(|word| *word > 35) {
         let text = "the program reads the clock: set the Do-more clock to the time of the original's";
         notes.push(Note::new(Mark::Clock, text));
     }

@@ -5,7 +5,7 @@ use ladder::{Address, FileType, Instruction, Number, Operand, Place};
 
 use super::allocate::Block;
 use super::context::{Context, Converted, Person};
-use super::emit::{Contact, Emitter};
+use super::emit::{Contact, Emitter, Relation};
 use super::marks::{Mark, Note};
 
 /// A value that is read.
@@ -46,6 +46,14 @@ pub enum Bit {
     },
     /// Decided at run time, in a block of bits: `C[..]`.
     Indexed(String),
+    /// As one of the others while the number of the bit, a plain operand, is 0 to 15: else it reads as 0
+    /// and writing it does nothing.
+    Within {
+        /// Number of the bit.
+        index: String,
+        /// The bit.
+        bit: Box<Bit>,
+    },
 }
 
 /// Where a file operand (`#N7:0`, `T4:3`, ...) begins.
@@ -265,7 +273,7 @@ impl Context<'_> {
             Place::Indirect(inner) => {
                 let index = self.index_term(inner)?;
                 let limit = elements.saturating_sub(1);
-                self.condition(Mark::Indirect, format!("{inner} must stay within 0 to {limit} for {address}"));
+                self.index_condition(inner, limit, address);
                 if scale == 1 {
                     text = format!("{text} + {index}");
                 } else {
@@ -281,6 +289,13 @@ impl Context<'_> {
             text = if scale == 1 { format!("{text} + {index}") } else { format!("{text} + {index} * {scale}") };
         }
         Ok((block, fold(&text)))
+    }
+
+    /// An index must stay in its file, unless the program itself keeps it there.
+    fn index_condition(&mut self, inner: &Address, limit: u32, address: &Address) {
+        if !self.facts.stays_within(inner, 0, i32::try_from(limit).unwrap_or(i32::MAX)) {
+            self.condition(Mark::Indirect, format!("{inner} must stay within 0 to {limit} for {address}"));
+        }
     }
 
     /// The value in brackets as a term.
@@ -369,7 +384,26 @@ impl Context<'_> {
                 let words = self.places.base(file_type, file, word).map_or(1, |base| base.words);
                 let through = word == 0 && words > 1;
                 let limit = if through { words.saturating_mul(16) - 1 } else { 15 };
-                self.condition(Mark::Indirect, format!("{inner} must stay within 0 to {limit} for {address}"));
+                // MicroLogix 1100 to 1500 read 0 past the last bit of a word and write nothing there.
+                let ends = !through && !self.slc_like();
+                if !ends {
+                    self.index_condition(inner, limit, address);
+                }
+                if ends && !self.facts.stays_within(inner, 0, 15) {
+                    let bit = match block {
+                        block if block.is_bits() => {
+                            Bit::Indexed(format!("{}[{}]", block.name(), fold(&format!("{number} + {index}"))))
+                        }
+                        Block::N => Bit::InWord { word: format!("N[{number}]"), bit: index.clone() },
+                        _ => {
+                            return Err(Person::new(
+                                Mark::Indirect,
+                                format!("{address}: a bit of a long word at run time"),
+                            ));
+                        }
+                    };
+                    return Ok(Bit::Within { index, bit: Box::new(bit) });
+                }
                 if block.is_bits() {
                     Ok(Bit::Indexed(format!("{}[{}]", block.name(), fold(&format!("{number} + {index}")))))
                 } else if matches!(block, Block::D | Block::R | Block::Sl) {
@@ -439,7 +473,6 @@ impl Context<'_> {
 
     /// A contact on a bit; a bit decided at run time is computed into a scratch first.
     pub fn bit_contact(&mut self, e: &mut Emitter, operand: &Operand, closed: bool) -> Converted<Contact> {
-        use super::emit::Relation;
         let bit = self.bit(operand)?;
         let contact = match &bit {
             Bit::Plain(text) if closed => Contact::Off(text.clone()),
@@ -503,6 +536,7 @@ impl Bit {
         match self {
             Bit::Plain(text) | Bit::Indexed(text) => text.clone(),
             Bit::InWord { word, bit } => format!("({word} >> ({bit})) & 1"),
+            Bit::Within { index, bit } => format!("IF({index} < 0, 0, IF({index} > 15, 0, {}))", bit.term()),
         }
     }
 
@@ -518,13 +552,18 @@ impl Bit {
                 let value = if on { set } else { format!("({word} & (-1 - (1 << ({bit}))))") };
                 e.math(&word.replace(' ', ""), &sign_extended(&value));
             }
+            Bit::Within { index, bit } => e.when(|e| {
+                e.and_compare(Relation::GreaterOrEqual, index, "0");
+                e.and_compare(Relation::LessOrEqual, index, "15");
+                bit.write(e, on);
+            }),
         }
     }
 }
 
 /// The low 16 bits of an integer expression as a signed word.
 pub fn sign_extended(expression: &str) -> String {
-    format!("(({expression}) + 32768 & 65535) - 32768")
+    format!("((({expression}) + 32768) & 65535) - 32768")
 }
 
 fn is_long_member(address: &Address) -> bool {

@@ -48,6 +48,7 @@ struct Control {
     length: i64,
     position: String,
     name: String,
+    address: ladder::Address,
 }
 
 impl Control {
@@ -68,11 +69,20 @@ impl Control {
         if length <= 0 {
             return Err(Person::new(Mark::Files, format!("{name}.LEN is {length}: a length of nothing")));
         }
-        Ok(Control { parts, length, position, name })
+        Ok(Control { parts, length, position, name, address: address.clone() })
     }
 
     fn bit(&self, cx: &Context<'_>, bit: u16) -> Converted<String> {
         self.parts.bit(cx, bit)
+    }
+
+    /// POS must stay in the file, unless the program itself keeps it there.
+    fn position_condition(&self, cx: &mut Context<'_>) {
+        let position = self.address.clone().with_word(2);
+        let last = i32::try_from(self.length).unwrap_or(i32::MAX);
+        if !cx.facts.stays_within(&position, 0, last) {
+            cx.condition(Mark::Files, format!("{}.POS stays within 0 to {last}", self.name));
+        }
     }
 }
 
@@ -137,7 +147,7 @@ fn step(
     let (en, dn, er) = (control.bit(cx, EN)?, control.bit(cx, DN)?, control.bit(cx, ER)?);
     let (position, length) = (&control.position, control.length);
     let last = length.to_string();
-    cx.condition(Mark::Files, format!("{}.POS stays within 0 to {length}", control.name));
+    control.position_condition(cx);
     e.when(|e| {
         e.and_not(&en);
         // In the first scan a sequencer that stands at 0 works with step 0.
@@ -367,7 +377,7 @@ impl Stack {
             return Err(Person::new(Mark::Files, format!("{file}: a stack of other than words")));
         }
         let words = words(cx, file, &start, u32::try_from(control.length).unwrap_or(0))?;
-        cx.condition(Mark::Files, format!("{}.POS stays within 0 to {}", control.name, control.length));
+        control.position_condition(cx);
         Ok(Stack { control, words, first: start.first, block: start.block })
     }
 

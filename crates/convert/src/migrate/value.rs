@@ -339,7 +339,10 @@ impl Value {
                 _ => a / b,
             });
         }
-        let left = self.beside(other);
+        // A constant is written as a float, which makes the operation one.
+        let known = |value: &Value| if value.constant.is_some() { value.as_float() } else { value.clone() };
+        let (this, other) = (known(self), &known(other));
+        let left = this.beside(other);
         // One float is enough to make the operation one.
         let right = other.beside(&Value { width: Width::Float, ..left.clone() });
         let (bind, left_least) = match sign {

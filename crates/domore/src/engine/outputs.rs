@@ -5,7 +5,7 @@ use super::op::*;
 use super::operand::Why;
 use crate::address::{Constant, Number};
 use crate::counter::CounterKind;
-use crate::memory::{ElementType, Num};
+use crate::memory::{ElementType, Kind, Num, Place};
 use crate::program::Instruction;
 use crate::timer::TimerKind;
 
@@ -184,7 +184,19 @@ impl Compiler {
                 if constant(text(2)) != Some(0x20000) {
                     return Err(format!("mode {} of MEMCOPY is not decoded", text(2)));
                 }
-                let (from, to) = (out.span(text(0))?, out.writable(text(1))?);
+                let from = out.span(text(0))?;
+                // Memory as it is: a string goes into a string of the same length, nothing else does.
+                let to = match (from, out.span(text(1))?) {
+                    (Span::Fixed { first: source, .. }, to @ Span::Fixed { first, .. })
+                        if matches!(source.kind, Kind::Text(_)) && source.kind == first.kind =>
+                    {
+                        to
+                    }
+                    (Span::Fixed { first: Place { kind: Kind::Text(_), .. }, .. }, _) => {
+                        return Err(format!("{} is a string", text(0)));
+                    }
+                    _ => out.writable(text(1))?,
+                };
                 if matches!(from, Span::Constant(_)) {
                     return Err(format!("{}: expected an element", text(0)));
                 }
