@@ -13,7 +13,7 @@ use sim::choices::Choice;
     name = "rungs",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 a difference or finding, 2 bad use, 3 unreadable input.\n\
+    after_help = "Exit codes: 0 done, 1 a difference or finding, 2 bad use or output that cannot be written, 3 unreadable input.\n\
                   Several files or folders are worked through in order; one that cannot be read is reported and the rest goes on.\n\n\
                   Example: rungs show conveyor.RSS --file 2"
 )]
@@ -133,7 +133,7 @@ pub struct ShowArguments {
     /// Only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
     #[arg(long, value_name = "A[..B]")]
     pub rung: Option<RungRange>,
-    /// Columns to draw in; default: the terminal's width, 100 in a pipe
+    /// Columns to draw in, at least 60; default: the terminal's width, 100 in a pipe
     #[arg(long)]
     pub width: Option<usize>,
     /// Plain ASCII instead of box-drawing characters
@@ -214,7 +214,7 @@ pub struct ExportArguments {
     /// With --to csv: which table
     #[arg(long, value_enum, default_value_t)]
     pub table: Table,
-    /// File to write; a folder when several projects are exported. Default: standard output
+    /// File to write; a folder when several projects are exported, which gets the subfolders they come from. Default: standard output, where each of several JSON projects is one line
     #[arg(short, long)]
     pub output: Option<PathBuf>,
     /// Overwrite files that exist
@@ -477,7 +477,9 @@ impl std::str::FromStr for RungRange {
                 (only, only)
             }
         };
-        if text.is_empty() || first > last {
+        if first > last {
+            Err(format!("the range is reversed: rung {first} comes after {last}"))
+        } else if text.is_empty() {
             Err("expected A, A..B, A.. or ..B".to_owned())
         } else {
             Ok(RungRange { first, last })

@@ -21,7 +21,7 @@ fn main() -> ExitCode {
         // A reader that went away (`rungs show X | head`) is no failure of ours.
         Err(error) if error.is_broken_pipe() => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("rungs: {error}");
+            eprintln!("rungs: {}", output::printable(&error.to_string()));
             ExitCode::from(error.exit_code())
         }
     }

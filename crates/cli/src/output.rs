@@ -11,6 +11,8 @@ pub enum Outcome {
     Done,
     /// A difference, a failed expectation, a finding at error level.
     Finding,
+    /// At least one output was not written, because it would overwrite another or its place takes none.
+    NotWritten,
     /// At least one input could not be read.
     Unreadable,
 }
@@ -20,6 +22,7 @@ impl From<Outcome> for ExitCode {
         ExitCode::from(match outcome {
             Outcome::Done => 0,
             Outcome::Finding => 1,
+            Outcome::NotWritten => 2,
             Outcome::Unreadable => 3,
         })
     }
@@ -35,12 +38,9 @@ pub enum Error {
 }
 
 impl Error {
-    /// 2 for bad use, 1 for output that could not be written.
+    /// 2: bad use, or output that could not be written.
     pub fn exit_code(&self) -> u8 {
-        match self {
-            Error::Use(_) => 2,
-            Error::Write(_) => 1,
-        }
+        2
     }
 
     /// The reader of standard output closed it.

@@ -142,7 +142,7 @@ fn folders_and_outputs() {
     let out = folder("many").display().to_string();
     text(&["export", ".", "--to", "csv", "--table", "timers", "-o", &out, "--image", "main"]);
     // The texts beside the projects are not taken for projects; nothing is overwritten unasked.
-    let again = rungs(&["export", "motor", "--to", "csv", "--table", "timers", "-o", &out]);
+    let again = rungs(&["export", ".", "--to", "csv", "--table", "timers", "-o", &out]);
     assert_eq!(again.status.code(), Some(2), "{}", String::from_utf8_lossy(&again.stderr));
     assert_eq!(json(&["info", "--json", "motor", "batch/batch.RSS"]).len(), 2);
 }
@@ -189,4 +189,63 @@ fn a_project_read_in_part_is_not_written_to_a_file() {
     let output = rungs(&["export", &damaged_name, "--to", "json", "-o", &target_name]);
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(!target.exists());
+}
+
+#[test]
+fn a_folder_is_exported_whole_into_the_same_subfolders() {
+    let (from, to) = (folder("export_from"), folder("export_to"));
+    for below in ["a", "b"] {
+        std::fs::create_dir_all(from.join(below)).expect("a folder");
+        std::fs::copy(examples().join("motor/motor.RSS"), from.join(below).join("motor.RSS")).expect("a copy");
+    }
+    let (from, to) = (from.display().to_string(), to.display().to_string());
+    text(&["export", &from, "--to", "json", "-o", &to]);
+    for below in ["a", "b"] {
+        assert!(Path::new(&to).join(below).join("motor.json").is_file(), "{below}");
+    }
+    // One that is in the way does not stop the others.
+    std::fs::remove_file(Path::new(&to).join("b/motor.json")).expect("removed");
+    let again = rungs(&["export", &from, "--to", "json", "-o", &to]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("a/motor.json exists; --force overwrites it"));
+    assert!(Path::new(&to).join("b/motor.json").is_file());
+    // Two of one name and no folder to keep them apart: the second is told what is the matter.
+    let (a, b) = (format!("{from}/a/motor.RSS"), format!("{from}/b/motor.RSS"));
+    let clash = rungs(&["export", &a, &b, "--to", "json", "-o", &to, "--force"]);
+    assert_eq!(clash.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&clash.stderr).contains("was just written from another project"));
+}
+
+#[test]
+fn several_json_projects_are_one_document_a_line() {
+    assert_eq!(json(&["export", "motor/motor.RSS", "batch/batch.RSS", "--to", "json"]).len(), 2);
+}
+
+#[test]
+fn a_build_never_replaces_its_source_and_says_what_it_cannot_write() {
+    let folder = folder("build");
+    let path = |name: &str| folder.join(name).display().to_string();
+    std::fs::copy(examples().join("motor/motor.SLC"), folder.join("motor.SLC")).expect("a copy");
+    let before = std::fs::read(folder.join("motor.SLC")).expect("the text");
+    let over = rungs(&["build", &path("motor.SLC"), "-o", &path("./motor.SLC"), "--force"]);
+    assert_eq!(over.status.code(), Some(2));
+    assert_eq!(std::fs::read(folder.join("motor.SLC")).expect("the text"), before);
+    assert_eq!(rungs(&["build", &path("motor.SLC"), "-o", &path("none/motor.RSS")]).status.code(), Some(2));
+    let garbage = "START Bul.1763 % x %\n\nLADDER 2\nSOR XIC B3:0/0 OTE B3:0/1 EOR\nsor XIC B3:0/2 OTE B3:0/3 eor\n";
+    std::fs::write(folder.join("g.SLC"), garbage).expect("written");
+    let refused = rungs(&["build", &path("g.SLC"), "-o", &path("g.RSS")]);
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("line 5: expected a rung"));
+    assert!(!folder.join("g.RSS").exists());
+    let escape = text(&["export", "motor/motor.RSS", "--to", "json"]).replacen("\"LADDER\"", "\"\\u001b[31m\"", 1);
+    std::fs::write(folder.join("e.json"), escape).expect("written");
+    let refused = rungs(&["build", &path("e.json"), "-o", &path("e.RSS")]);
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(!refused.stderr.contains(&0x1B), "{}", String::from_utf8_lossy(&refused.stderr));
+}
+
+#[test]
+fn a_reversed_range_is_named() {
+    let output = rungs(&["show", "motor/motor.RSS", "--rung", "5..2"]);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("the range is reversed"));
 }

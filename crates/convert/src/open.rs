@@ -22,6 +22,8 @@ pub enum OpenError {
     OtherDialect,
     /// A text for Do-more Designer that cannot be read.
     Domore(domore::text::Error),
+    /// A project with a deviation, read strictly.
+    Deviation(ladder::Diagnostic),
     /// A text for Do-more Designer with a deviation, read strictly.
     Strict(domore::Diagnostic),
 }
@@ -34,6 +36,7 @@ impl fmt::Display for OpenError {
             OpenError::Json(error) => error.fmt(f),
             OpenError::OtherDialect => f.write_str("expected a project of RSLogix 500, found one of Do-more Designer"),
             OpenError::Domore(error) => error.fmt(f),
+            OpenError::Deviation(found) => write!(f, "strict reading: {}: {}", found.place, found.message),
             OpenError::Strict(found) => write!(f, "strict reading: {found}"),
         }
     }
@@ -132,14 +135,7 @@ fn json_text(bytes: &[u8]) -> Option<&str> {
 fn strict(project: Project, mode: Mode) -> Result<Project, OpenError> {
     let worst = project.diagnostics.iter().find(|d| d.severity >= ladder::Severity::Warning);
     match worst {
-        Some(first) if mode == Mode::Strict => Err(OpenError::File(rss::Error::from(rss::Deviation {
-            stream: String::new(),
-            space: rss::Space::File,
-            offset: 0,
-            record: first.place.clone(),
-            expected: "a project without deviation (strict reading)".to_owned(),
-            found: first.message.clone(),
-        }))),
+        Some(first) if mode == Mode::Strict => Err(OpenError::Deviation(first.clone())),
         _ => Ok(project),
     }
 }

@@ -174,6 +174,15 @@ fn errors_say_where_what_and_found() {
         ("/symbols/0/kind", json!("adress"), "/symbols/0/kind: expected one of address, "),
         ("/diagnostics/0/severity", json!("bad"), "expected one of note, warning, error, found \"bad\""),
         ("/online/io/0/module/confidence", json!(""), "/online/io/0/module/confidence: expected one of unknown, "),
+        // Members that contradict each other.
+        ("/data_files/1/number", json!(0), "/data_files/1/number: expected each file once, found another file 0"),
+        ("/program_files/1/number", json!(0), "/program_files/1/number: expected each file once, found another file 0"),
+        ("/processor/catalog", json!("Bul.1766"), "expected \"Bul.1763\" as the model 61 has, found \"Bul.1766\""),
+        (
+            "/program_files/1/rungs/0/instructions/0/operands/0",
+            json!("B3:7/7"),
+            "/program_files/1/rungs/0/instructions: expected the operands of the text, ",
+        ),
         ("/memory", json!({}), "expected a member `instruction_words_used`, found none"),
     ] {
         let error = refused(pointer, value);

@@ -6,17 +6,21 @@ use ladder::{Project, Severity};
 
 use super::{open, read_file};
 use crate::args::BuildArguments;
-use crate::output::{Error, Outcome};
+use crate::output::{Error, Outcome, printable};
 
 pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
     let output = &arguments.output;
+    let sources = [Some(arguments.text.clone()), symbols_file(arguments)];
+    if let Some(source) = sources.iter().flatten().find(|source| is_same_file(source, output)) {
+        return Err(Error::Use(format!("{}: the project would overwrite the text it is made of", source.display())));
+    }
     if output.exists() && !arguments.force {
         return Err(Error::Use(format!("{} exists; --force overwrites it", output.display())));
     }
     let mut project = match open(&arguments.text, rss::Mode::Permissive) {
         Ok(project) => project,
         Err(why) => {
-            eprintln!("{}: {why}", arguments.text.display());
+            eprintln!("{}", printable(&format!("{}: {why}", arguments.text.display())));
             return Ok(Outcome::Unreadable);
         }
     };
@@ -27,10 +31,11 @@ pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
     if let Some(symbols) = symbols_file(arguments) {
         add_symbols(&mut project, &symbols)?;
     }
-    let built = convert::to_rss::project_file(&project).map_err(|error| Error::Use(error.to_string()))?;
-    let bytes = built.file.write().map_err(|error| Error::Use(error.to_string()))?;
+    let wrong = |error: rss::Error| Error::Use(printable(&error.to_string()));
+    let built = convert::to_rss::project_file(&project).map_err(wrong)?;
+    let bytes = built.file.write().map_err(wrong)?;
     report(output, &built.notes);
-    std::fs::write(output, &bytes)?;
+    std::fs::write(output, &bytes).map_err(|error| Error::Use(format!("{}: {error}", output.display())))?;
     println!(
         "{}: {} bytes, {} ladder files, {} rungs",
         output.display(),
@@ -41,10 +46,16 @@ pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
     Ok(Outcome::Done)
 }
 
+/// Both names lead to one file, by whatever path.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
 /// Prints what was noted; true if something is worse than a warning.
 fn report(path: &Path, diagnostics: &[ladder::Diagnostic]) -> bool {
     for diagnostic in diagnostics {
-        eprintln!("{}: {}: {}: {}", path.display(), diagnostic.severity.as_str(), diagnostic.place, diagnostic.message);
+        let (severity, place, message) = (diagnostic.severity.as_str(), &diagnostic.place, &diagnostic.message);
+        eprintln!("{}", printable(&format!("{}: {severity}: {place}: {message}", path.display())));
     }
     diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }

@@ -10,7 +10,7 @@ use ladder::Severity;
 
 use super::{Opened, domore, each_dialect};
 use crate::args::{ExportArguments, Form, Input, Table};
-use crate::output::{Error, Outcome};
+use crate::output::{Error, Outcome, printable};
 
 pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
     let into_folder = arguments.output.as_ref().is_some_and(|output| output.is_dir());
@@ -20,20 +20,25 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
     }
     let input = Input { strict: arguments.strict, image: arguments.image, json: false };
     let written = RefCell::new(HashSet::new());
-    let put = |path: &Path, bytes: &[u8], ending: &str, out: &mut dyn Write| -> Result<(), Error> {
-        let target = arguments.output.as_ref().map(|output| target(output, into_folder, path, ending));
-        match target {
-            None => out.write_all(bytes)?,
-            Some(path) => {
-                // Two projects of one name from different folders must not overwrite each other.
-                if (path.exists() && !arguments.force) || !written.borrow_mut().insert(path.clone()) {
-                    return Err(Error::Use(format!("{} exists; --force overwrites it", path.display())));
-                }
-                std::fs::write(&path, bytes)?;
-                writeln!(out, "{}", path.display())?;
+    let put = |path: &Path, bytes: &[u8], ending: &str, out: &mut dyn Write| -> Result<Outcome, Error> {
+        let Some(output) = &arguments.output else {
+            out.write_all(bytes)?;
+            return Ok(Outcome::Done);
+        };
+        let target = if into_folder { target(output, &arguments.files, path, ending) } else { output.clone() };
+        let why = match write(&target, bytes, arguments.force, &mut written.borrow_mut()) {
+            Ok(()) => {
+                writeln!(out, "{}", target.display())?;
+                return Ok(Outcome::Done);
             }
+            Err(why) => why,
+        };
+        if !many {
+            return Err(Error::Use(why));
         }
-        Ok(())
+        // One project must not stop the others.
+        eprintln!("{}: not written: {why}", path.display());
+        Ok(Outcome::NotWritten)
     };
     let slc = |opened: &Opened, out: &mut dyn Write| {
         let incomplete = opened.project.diagnostics.iter().any(|d| d.severity == Severity::Error);
@@ -42,26 +47,46 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
             eprintln!("{}: not written, because it could not be read whole", opened.path.display());
             return Ok(Outcome::Unreadable);
         }
-        let bytes = exported(opened, arguments)?;
-        put(&opened.path, &bytes, ending(arguments), out)?;
-        Ok(if incomplete { Outcome::Unreadable } else { Outcome::Done })
+        let bytes = exported(opened, arguments, many && arguments.output.is_none())?;
+        let outcome = put(&opened.path, &bytes, ending(arguments), out)?;
+        Ok(if incomplete { Outcome::Unreadable } else { outcome })
     };
     each_dialect(&arguments.files, &input, slc, |opened, out| {
         // What could not be understood is carried, so that a text is whole in any case.
         let bytes = domore::exported(opened, arguments)?;
-        put(&opened.path, &bytes, domore::ending(arguments), out)?;
-        Ok(Outcome::Done)
+        put(&opened.path, &bytes, domore::ending(arguments), out)
     })
 }
 
-fn exported(opened: &Opened, arguments: &ExportArguments) -> Result<Vec<u8>, Error> {
+/// Writes a file unless something is there that was not to be overwritten.
+fn write(target: &Path, bytes: &[u8], force: bool, written: &mut HashSet<PathBuf>) -> Result<(), String> {
+    if written.contains(target) {
+        // Not even --force lets one project of a run replace another.
+        return Err(format!("{} was just written from another project", target.display()));
+    }
+    if target.exists() && !force {
+        return Err(format!("{} exists; --force overwrites it", target.display()));
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder
+        .map_or(Ok(()), std::fs::create_dir_all)
+        .and_then(|()| std::fs::write(target, bytes))
+        .map_err(|error| format!("{}: {error}", target.display()))?;
+    written.insert(target.to_owned());
+    Ok(())
+}
+
+/// The file for one project; `line`: a JSON project goes on one line, as one of several.
+fn exported(opened: &Opened, arguments: &ExportArguments, line: bool) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     match (arguments.to, arguments.table) {
+        (Form::Json, _) if line => convert::json::write_json_line(&opened.project, &mut bytes)?,
         (Form::Json, _) => convert::json::write_json(&opened.project, &mut bytes)?,
         (Form::Slc, _) => {
             let export = convert::slc::project::export(opened.image());
             for note in &export.notes {
-                eprintln!("{}: {}: {}: {}", opened.path.display(), note.severity.as_str(), note.place, note.message);
+                let (severity, place, message) = (note.severity.as_str(), &note.place, &note.message);
+                eprintln!("{}", printable(&format!("{}: {severity}: {place}: {message}", opened.path.display())));
             }
             bytes = convert::slc::encode(&export.file.write());
         }
@@ -83,13 +108,13 @@ fn exported(opened: &Opened, arguments: &ExportArguments) -> Result<Vec<u8>, Err
     Ok(bytes)
 }
 
-/// `-o FILE`, or `-o FOLDER` with the project's name and the ending of the form.
-fn target(output: &Path, into_folder: bool, project: &Path, ending: &str) -> PathBuf {
-    if !into_folder {
-        return output.to_path_buf();
-    }
+/// In the folder `-o` names: the project's name with the ending of the form, below the same subfolders
+/// as in the folder the project was found in, so that projects of one name stay apart.
+fn target(output: &Path, roots: &[PathBuf], project: &Path, ending: &str) -> PathBuf {
+    let below = |root: &PathBuf| project.strip_prefix(root).ok().and_then(Path::parent).filter(|_| root.is_dir());
+    let folder = roots.iter().find_map(below).unwrap_or(Path::new(""));
     let stem = project.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    output.join(format!("{stem}.{ending}"))
+    output.join(folder).join(format!("{stem}.{ending}"))
 }
 
 fn ending(arguments: &ExportArguments) -> &'static str {

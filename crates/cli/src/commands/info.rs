@@ -149,6 +149,11 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
         (Some(catalog), Some(name)) => {
             format!("{catalog}  {name}  ({}: {})", processor.family_confidence.as_str(), processor.evidence)
         }
+        // A text can name the catalogue number alone.
+        (Some(catalog), None) if processor.model.is_none() => {
+            let (family, confidence) = (processor.family, processor.family_confidence.as_str());
+            format!("{catalog}  {family}, model not told  ({confidence}: {})", processor.evidence)
+        }
         _ => unknown(),
     };
     line("Processor", &name)?;
@@ -156,7 +161,9 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
     line("Program ID", &processor.program_id.map(|id| format!("{id:x}")).unwrap_or_default())?;
     let saved_by = match source.application.as_str() {
         // Our own writer states the version whose format it follows.
-        "rungs" => format!("rungs, in the format of RSLogix {}", source.saved_by),
+        ours if ours == "rungs" || ours.starts_with("rungs, ") => {
+            format!("{ours}, in the format of RSLogix {}", source.saved_by)
+        }
         application => [application, source.saved_by.as_str()].join(" ").trim().to_owned(),
     };
     line("Saved by", &saved_by)?;

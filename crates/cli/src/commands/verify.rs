@@ -33,7 +33,7 @@ pub fn run(arguments: &VerifyArguments) -> Result<Outcome, Error> {
         } else {
             print(&name, &verification, &missing, &code, &mut Printable(out))?;
         }
-        Ok(Ok(judge(&verification, &missing, &code)))
+        Ok(Ok(judge(&verification, &missing, &code, arguments.strict)))
     })
 }
 
@@ -61,25 +61,32 @@ fn designer(
 
 /// A stream that is missing where there is no program without it, or could not be opened or read to
 /// its end, is unreadable input; deviations, other missing streams, and bytes or code that differ, are a
-/// finding.
-fn judge(verification: &rss::verify::Verification, missing: &[&rss::Missing], code: &CodeCheck) -> Outcome {
+/// finding. Read strictly, any deviation is unreadable input, as for every command.
+fn judge(
+    verification: &rss::verify::Verification,
+    missing: &[&rss::Missing],
+    code: &CodeCheck,
+    strict: bool,
+) -> Outcome {
     let deviations = || verification.streams.iter().flat_map(|stream| &stream.deviations);
-    let unopened = deviations().any(|deviation| deviation.space != rss::Space::Inflated);
-    if unopened || missing.iter().any(|missing| missing.essential) || verification.streams.iter().any(|stream| stream.error.is_some()) {
+    let unopened = deviations().any(|deviation| strict || deviation.space != rss::Space::Inflated);
+    if unopened
+        || missing.iter().any(|missing| missing.essential)
+        || verification.streams.iter().any(|stream| stream.error.is_some())
+    {
         Outcome::Unreadable
-    } else if !verification.roundtrip || !code.differs.is_empty() || !missing.is_empty() || deviations().next().is_some() {
+    } else if !verification.roundtrip
+        || !code.differs.is_empty()
+        || !missing.is_empty()
+        || deviations().next().is_some()
+    {
         Outcome::Finding
     } else {
         Outcome::Done
     }
 }
 
-fn line(
-    name: &str,
-    verification: &rss::verify::Verification,
-    missing: &[&rss::Missing],
-    code: &CodeCheck,
-) -> Value {
+fn line(name: &str, verification: &rss::verify::Verification, missing: &[&rss::Missing], code: &CodeCheck) -> Value {
     let streams = verification.streams.iter().map(|stream| {
         let mut value = json!({
             "stream": stream.stream,

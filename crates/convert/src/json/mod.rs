@@ -50,6 +50,15 @@ pub fn write_json(project: &Project, mut writer: impl Write) -> io::Result<()> {
     writer.write_all(b"\n")
 }
 
+/// Writes the project as a document on one line: several of them are JSON Lines.
+///
+/// # Errors
+/// Only those of `writer`.
+pub fn write_json_line(project: &Project, mut writer: impl Write) -> io::Result<()> {
+    serde_json::to_writer(&mut writer, &write::document(project))?;
+    writer.write_all(b"\n")
+}
+
 /// The document that [`write_json`] writes.
 pub fn to_json_text(project: &Project) -> String {
     let mut text = Vec::new();

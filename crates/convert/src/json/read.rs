@@ -1,11 +1,13 @@
 //! From the shape of a JSON document to the model.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 use ladder::{
     AddressEntry, Channel, Comment, CommentOwner, Confidence, DataFile, Diagnostic, Documentation, Element, Family,
-    Image, Instruction, InstructionComment, IoConfiguration, IoRange, Memory, MessageSetup, Mnemonic, Module, Operand,
-    Processor, ProgramFile, ProgramFileKind, Project, RevisionNote, Rung, Setting, Severity, Slot, Source, Target,
+    FileType, Image, Instruction, InstructionComment, IoConfiguration, IoRange, Memory, MessageSetup, Mnemonic, Module,
+    Operand, Processor, ProgramFile, ProgramFileKind, Project, RevisionNote, Rung, Setting, Severity, Slot, Source,
+    Target,
 };
 
 use super::data_file::data_file;
@@ -15,7 +17,7 @@ use super::path::{Path, quoted};
 use super::structure::series_from;
 use super::target::target_from;
 use crate::limits::{self, MAX_DATA_WORDS, MAX_PARTS, Parts};
-use crate::slc::rung::parse_rung;
+use crate::slc::rung::{parse_rung, rung_text};
 
 type Result<T> = std::result::Result<T, JsonError>;
 
@@ -123,6 +125,14 @@ fn data_files(docs: Vec<DataFileDoc<'_>>, words: &mut usize, path: &Path<'_>) ->
     for (index, doc) in docs.into_iter().enumerate() {
         let path = path.index(index);
         let file = data_file(doc, &path)?;
+        // M0 and M1 are numbered on their own, and so is each kind of function file.
+        let key = |file: &DataFile| {
+            let apart = file.file_type.is_function_file() || matches!(file.file_type, FileType::M0 | FileType::M1);
+            (file.number, apart.then_some(file.file_type))
+        };
+        if files.iter().any(|other| key(other) == key(&file)) {
+            return Err(path.member("number").error("each file once", format!("another file {}", file.number)));
+        }
         if !limits::admit_words(words, file.words.len()) {
             return Err(path.error(format!("data files of at most {MAX_DATA_WORDS} words together"), "more"));
         }
@@ -136,6 +146,13 @@ fn processor(doc: ProcessorDoc<'_>, path: &Path<'_>) -> Result<Processor> {
         Some(text) => confidence(&text, path.member("family_confidence"))?,
         None => Confidence::Unknown,
     };
+    // Two members that name the controller must not name two.
+    if let (Some(model), Some(catalog)) = (doc.model.and_then(rss::tables::processor_model), &doc.catalog)
+        && !catalog.eq_ignore_ascii_case(model.catalog)
+    {
+        let expected = format!("{} as the model {} has", quoted(model.catalog), model.code);
+        return Err(path.member("catalog").error(expected, quoted(catalog)));
+    }
     Ok(Processor {
         model: doc.model,
         catalog: option(doc.catalog),
@@ -156,6 +173,11 @@ fn processor(doc: ProcessorDoc<'_>, path: &Path<'_>) -> Result<Processor> {
 
 fn program_files(docs: Vec<ProgramFileDoc<'_>>, family: Family, path: &Path<'_>) -> Result<Vec<ProgramFile>> {
     let mut parts = Parts::default();
+    let mut seen = HashSet::new();
+    if let Some((index, doc)) = docs.iter().enumerate().find(|(_, doc)| !seen.insert(doc.number)) {
+        let found = format!("another file {}", doc.number);
+        return Err(path.index(index).member("number").error("each file once", found));
+    }
     let files = docs.into_iter().enumerate();
     files.map(|(index, doc)| program_file(doc, family, &mut parts, &path.index(index))).collect()
 }
@@ -207,11 +229,18 @@ fn rung(doc: RungDoc<'_>, file: u16, family: Family, path: &Path<'_>) -> Result<
                 path.member("text").error(error.expected, format!("{found} at {place}"))
             })?;
             if let Some(list) = doc.instructions {
+                let read_text = rung_text(&rung);
                 let mut list = list.into_iter().enumerate();
                 let list_path = path.member("instructions");
                 overlay(&mut rung.series, &mut list, &list_path)?;
                 if let Some((index, extra)) = list.next() {
                     return Err(list_path.index(index).error("no more instructions than the text has", extra.mnemonic));
+                }
+                // What the list holds must be what the text says, however either is spelled.
+                let listed = rung_text(&rung);
+                if listed != doc.text && listed != read_text {
+                    let expected = format!("the operands of the text, {}", quoted(&doc.text));
+                    return Err(list_path.error(expected, quoted(&listed)));
                 }
             }
             rung

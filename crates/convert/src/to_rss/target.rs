@@ -67,7 +67,8 @@ pub(super) fn target(project: &Project, image: &Image, notes: &mut Notes) -> Res
             known.join(", ")
         )));
     };
-    let others: Vec<&str> = candidates.iter().filter(|other| other.code != model.code).map(|other| other.name).collect();
+    let others: Vec<&str> =
+        candidates.iter().filter(|other| other.code != model.code).map(|other| other.name).collect();
     let others = if others.is_empty() { String::new() } else { format!(", not {}", others.join(" or ")) };
     let told = processor.catalog.as_deref().unwrap_or("the family");
     let message = format!(
@@ -86,6 +87,8 @@ fn is_variant(catalog: &str, of: &str) -> bool {
 
 /// The form in which the modules of a controller of unknown model were stored.
 fn io_form(image: &Image) -> IoForm {
-    let packed = |slot: &ladder::Slot| slot.module.identity.starts_with("vendor ") || slot.module.identity.starts_with("base unit ");
+    let packed = |slot: &ladder::Slot| {
+        slot.module.identity.starts_with("vendor ") || slot.module.identity.starts_with("base unit ")
+    };
     if image.io.slots.iter().any(packed) { IoForm::Packed } else { IoForm::Slots }
 }

@@ -112,7 +112,7 @@ fn documentation() -> Documentation {
 fn image() -> Image {
     Image {
         processor: Processor {
-            model: Some(62),
+            model: Some(61),
             catalog: Some("Bul.1763".into()),
             name: Some("MicroLogix 1100 Series B".into()),
             family: Family::MicroLogix1100,
