@@ -6,7 +6,7 @@ use super::goals::Goals;
 use super::inputs::Inputs;
 use super::pairs::{Mismatch, Pairs};
 use super::random::Random;
-use super::side::{Kind, Side, Slc};
+use super::side::{Kind, Seen, Side, Slc};
 use super::solve::{Plan, Solver};
 use super::tape::{Head, Set, Tape};
 
@@ -58,6 +58,8 @@ pub(crate) struct Campaign<'c, B: Side> {
     pub(crate) pairs: &'c Pairs,
     pub(crate) inputs: &'c Inputs<B::Target>,
     pub(crate) goals: Goals,
+    /// What the other side's instructions did.
+    pub(crate) seen: Seen,
     solver: &'c Solver<'c>,
     random: Random,
     corpus: Vec<Entry<B>>,
@@ -92,6 +94,9 @@ const PART_OF_ALL: u64 = 20;
 const PACES: [u32; 5] = [1, 7, 10, 13, 50];
 /// Longest time before a scan in a long wait, in microseconds. A controller's watchdog ends far longer ones.
 const LONGEST_PACE: u64 = 2_000_000;
+/// Time before a scan where weeks are to pass, in microseconds: no controller scans so slowly, but what it
+/// counts must add up the same.
+const DAY_PACE: u32 = 3_599_987_000;
 
 impl<'c, B: Side> Campaign<'c, B> {
     pub(crate) fn new(
@@ -103,7 +108,9 @@ impl<'c, B: Side> Campaign<'c, B> {
         presets: Vec<(u32, u32)>,
         (seed, budget): (u64, u64),
     ) -> Campaign<'c, B> {
+        let seen = Seen::new(both.b.operations());
         Campaign {
+            seen,
             both,
             pairs,
             inputs,
@@ -143,9 +150,10 @@ impl<'c, B: Side> Campaign<'c, B> {
         while self.open() {
             self.begin();
             match round % 8 {
-                0..4 => self.aim(),
-                4 => self.wait_long(),
-                5 if round % 16 == 5 => self.change_mode(),
+                0..3 => self.aim(),
+                3 => self.wait_long(),
+                4 => self.change_mode(),
+                5 if round % 1024 == 5 => self.wait_days(),
                 _ => self.wander(),
             }
             if self.open() && self.both.a.stopped().is_some() && self.random.chance(1, 4) {
@@ -225,7 +233,12 @@ impl<'c, B: Side> Campaign<'c, B> {
         } else {
             self.both.a.scan(time);
         }
-        self.both.b.scan(time);
+        // The other side can need more than the original shows: state a conversion keeps for itself.
+        if self.quiet < 20_000 || self.scans.is_multiple_of(4) {
+            self.both.b.scan_seen(time, &mut self.seen);
+        } else {
+            self.both.b.scan(time);
+        }
         self.goals.look(&self.both.a);
         self.scans += 1;
         self.time += time;
@@ -239,7 +252,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         if self.both.a.stopped().is_some() {
             self.stops += 1;
         }
-        if !self.goals.fresh.is_empty() {
+        if self.seen.take_fresh() | !self.goals.fresh.is_empty() {
             self.quiet = 0;
             self.keep();
         }
@@ -326,11 +339,9 @@ impl<'c, B: Side> Campaign<'c, B> {
             if !self.goes_on() {
                 return;
             }
-            if self.random.chance(1, busy) && !self.inputs.all.is_empty() {
+            if self.random.chance(1, busy) {
                 for _ in 0..1 + self.random.below(3) {
-                    let index = self.random.below(self.inputs.all.len());
-                    let value = self.some_value(index);
-                    self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+                    self.change();
                 }
             }
             if self.random.chance(1, 200) {
@@ -431,10 +442,8 @@ impl<'c, B: Side> Campaign<'c, B> {
         let length = |both: &Both<B>, (preset, base): (u32, u32)| {
             u64::from(both.a.word(preset).min(i16::MAX as u16)) * u64::from(base)
         };
-        if self.random.chance(1, 2) && !self.inputs.all.is_empty() {
-            let index = self.random.below(self.inputs.all.len());
-            let value = self.some_value(index);
-            self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+        if self.random.chance(1, 2) {
+            self.change();
         }
         let Some(one) = self.random.pick(&self.presets).copied() else { return self.wander() };
         let wait = if self.random.chance(1, 8) {
@@ -446,19 +455,46 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.pass(wait);
     }
 
-    /// Out of run and back, with changes meanwhile.
+    /// Out of run and back once or a few times, with and without changes meanwhile.
     fn change_mode(&mut self) {
-        self.scans_of(3);
-        if !self.goes_on() {
+        for _ in 0..1 + self.random.below(3) {
+            let before = self.random.below(4) as u64;
+            self.scans_of(before);
+            if !self.goes_on() {
+                return;
+            }
+            if self.random.chance(1, 2) {
+                self.change();
+            }
+            self.scan(true, 0);
+            let after = self.random.below(6) as u64;
+            self.scans_of(after);
+        }
+        self.wander();
+    }
+
+    /// One input changes before the next scan.
+    fn change(&mut self) {
+        if self.inputs.all.is_empty() {
             return;
         }
-        if !self.inputs.all.is_empty() {
-            let index = self.random.below(self.inputs.all.len());
-            let value = self.some_value(index);
-            self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+        let index = self.random.below(self.inputs.all.len());
+        let value = self.some_value(index);
+        self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+    }
+
+    /// More time than any counter of milliseconds in 31 bits can hold: what runs for weeks must go on right.
+    fn wait_days(&mut self) {
+        for _ in 0..700 {
+            if !self.goes_on() {
+                return;
+            }
+            if self.random.chance(1, 4) {
+                self.change();
+            }
+            let dt = if self.random.chance(1, 4) { self.pace } else { DAY_PACE };
+            self.scan(false, dt);
         }
-        self.scan(true, 0);
-        self.wander();
     }
 }
 

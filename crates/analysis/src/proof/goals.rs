@@ -121,6 +121,8 @@ pub(crate) struct Goals {
     /// Open bits by program file and rung: a rung without is not watched any more.
     left: Vec<Vec<u32>>,
     monitors: Vec<Monitor>,
+    /// A contact that saw a done bit: it was on, whatever it is at the end of the scan.
+    implied: BTreeMap<u32, Vec<u32>>,
     /// Goals reached since somebody asked last.
     pub(crate) fresh: Vec<u32>,
 }
@@ -151,14 +153,17 @@ impl Goals {
             numbers: Vec::new(),
             left: Vec::new(),
             monitors: Vec::new(),
+            implied: BTreeMap::new(),
             fresh: Vec::new(),
         };
+        let mut contacts: Vec<(u32, u32)> = Vec::new();
         let constant = constant_bits(xref, a);
         for file in image.ladder_files() {
             let dead = calls.file(file.number).is_some_and(|called| !called.reachable);
             let zones = file.rungs.iter().flat_map(|rung| rung.instructions()).any(|it| it.mnemonic == "MCR");
             for (number, rung) in (0..).zip(&file.rungs) {
                 let mut walk = Walk {
+                    contacts: &mut contacts,
                     goals: &mut goals,
                     a,
                     constant: &constant,
@@ -183,6 +188,13 @@ impl Goals {
                 }
             }
         }
+        for monitor in &goals.monitors {
+            if let Monitor::Done(at, done, _) = monitor {
+                for (_, contact) in contacts.iter().filter(|contact| contact.0 == *at) {
+                    goals.implied.entry(*contact).or_default().push(*done as u32);
+                }
+            }
+        }
         goals
     }
 
@@ -198,6 +210,9 @@ impl Goals {
         {
             goal.reached = true;
             self.fresh.push(number);
+            for done in self.implied.get(&number).cloned().unwrap_or_default() {
+                self.reach(done);
+            }
         }
     }
 
@@ -277,6 +292,8 @@ impl Trace for Goals {
 
 /// One rung on the way to its goals.
 struct Walk<'g> {
+    /// Bits that were on when a goal is reached.
+    contacts: &'g mut Vec<(u32, u32)>,
     goals: &'g mut Goals,
     a: &'g Slc,
     constant: &'g BTreeMap<u32, bool>,
@@ -352,6 +369,9 @@ impl Walk<'_> {
             numbers[0] = self.goals.add(location, GoalKind::Passes, &text, passes);
             numbers[1] = self.goals.add(location, GoalKind::Blocks, &text, blocks);
             open = PASSES | BLOCKS;
+            if let Some((at, wanted)) = contact {
+                self.contacts.push((at, numbers[usize::from(!wanted)]));
+            }
             self.boundaries(location, instruction, &text, dead);
         } else {
             known.clear();

@@ -68,6 +68,9 @@ impl<T: Clone> Inputs<T> {
             if !is_input(address, &accesses) {
                 continue;
             }
+            // A bit of a field of the clock: the field is what changes.
+            let word = Address { bit: None, ..address.clone() };
+            let address = if clock_field(&word).is_some() { &word } else { address };
             let text = address.to_string();
             let Ok((at, kind)) = a.place(&text) else { continue };
             if kind == Kind::Text || !seen.insert((at, kind)) {
@@ -155,7 +158,7 @@ fn is_input(address: &Address, accesses: &[Access<'_>]) -> bool {
     if !accesses.iter().any(|access| access.role.reads()) {
         return false;
     }
-    if clock_field(address).is_some() {
+    if clock_field(&Address { bit: None, ..address.clone() }).is_some() {
         return true;
     }
     match address.file_type {

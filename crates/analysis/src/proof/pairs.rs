@@ -138,16 +138,6 @@ pub struct Mismatch {
 /// itself, and they count through what the program does with them.
 const STATUS: [u16; 12] = [0, 4, 5, 13, 14, 24, 37, 38, 39, 40, 41, 42];
 
-/// Bits of a control word that belong to the program.
-fn mask(file_type: FileType, sub: u32) -> u16 {
-    match (file_type, sub) {
-        (FileType::T, 0) => 0xE000,
-        (FileType::C, 0) => 0xFC00,
-        (FileType::R, 0) => 0xFF00,
-        _ => u16::MAX,
-    }
-}
-
 impl Pairs {
     /// Finds all places. `tainted` are words of the original, by number, that must not be compared.
     pub(crate) fn new<B: Side>(
@@ -179,7 +169,7 @@ impl Pairs {
             for offset in 0..span.words {
                 let at = span.a + 16 * offset;
                 let apart = moved.get(&(at >> 4)).copied().unwrap_or(0);
-                let mut mask = mask(span.file_type, offset % span.size.max(1)) & !apart;
+                let mut mask = !apart;
                 let element = u16::try_from(offset).unwrap_or(u16::MAX);
                 let own = span.file_type == FileType::S || span.file_type.is_function_file();
                 if own {

@@ -92,6 +92,9 @@ pub struct Report {
     pub inputs: usize,
     /// All goals with what was reached.
     pub goals: Vec<Goal>,
+    /// Contacts and outputs of the other program, seen on and off, of those that ran; nothing where that is
+    /// not told.
+    pub other_coverage: Coverage,
     /// The first difference and how to see it.
     pub found: Option<(Difference, Counterexample)>,
     /// Why parts, or the whole, cannot be compared.
@@ -114,7 +117,7 @@ pub struct Report {
 pub const NOT_MODELLED: [&str; 4] = [
     "loss of power: only leaving and entering run is tried",
     "inputs and communication that change during a scan, and the time a scan takes itself",
-    "times other than whole milliseconds between scans, and scans of more than 2 seconds",
+    "times between scans that are no whole milliseconds",
     "forces, hardware faults and messages of other controllers",
 ];
 
@@ -131,6 +134,7 @@ impl Report {
             not_compared: 0,
             inputs: 0,
             goals: Vec::new(),
+            other_coverage: Coverage::default(),
             found: None,
             incomparable: Vec::new(),
             missing_rungs: Vec::new(),
@@ -160,6 +164,8 @@ impl Report {
         self.stops = campaign.stops;
         self.time = campaign.time;
         self.inputs = inputs;
+        let (reached, all) = campaign.seen.both_ways();
+        self.other_coverage = Coverage { reached, all };
         self.goals.clone_from(&campaign.goals.all);
         if self.scans < 2 && campaign.found.is_none() {
             self.incomparable.push("the original stops in its first scan".to_owned());
@@ -252,6 +258,9 @@ impl fmt::Display for Report {
         ];
         for (title, of) in kinds {
             writeln!(f, "{title}: {} reached", self.coverage(of))?;
+        }
+        if self.other_coverage.all > 0 {
+            writeln!(f, "contacts and outputs of the other program, on and off: {} seen", self.other_coverage)?;
         }
         list(f, "cannot be compared", &self.incomparable)?;
         list(f, "rungs of the original that the other program does not have", &self.missing_rungs)?;

@@ -60,6 +60,17 @@ pub trait Side: Sized {
     /// Time passes, then one scan runs.
     fn scan(&mut self, dt: Duration);
 
+    /// As [`Side::scan`], noting what its instructions did where the side can tell.
+    fn scan_seen(&mut self, dt: Duration, seen: &mut Seen) {
+        let _ = seen;
+        self.scan(dt);
+    }
+
+    /// Operations that [`Side::scan_seen`] tells about.
+    fn operations(&self) -> usize {
+        0
+    }
+
     /// Leaves run.
     fn leave_run(&mut self);
 
@@ -74,6 +85,70 @@ pub trait Side: Sized {
 
     /// Takes over the state of a fork, without allocating.
     fn copy_from(&mut self, other: &Self);
+}
+
+/// What the instructions of the other program did so far: it leads a run to what was converted into more than
+/// the original shows, and says how much of it ran.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    operations: Vec<u8>,
+    /// Something was seen for the first time since somebody asked last.
+    fresh: bool,
+}
+
+const ON: u8 = 1;
+const OFF: u8 = 2;
+const BELOW: u8 = 4;
+const EQUAL: u8 = 8;
+const ABOVE: u8 = 16;
+
+impl Seen {
+    pub(crate) fn new(operations: usize) -> Seen {
+        Seen { operations: vec![0; operations], fresh: false }
+    }
+
+    fn note(&mut self, operation: u32, what: u8) {
+        if let Some(seen) = self.operations.get_mut(operation as usize) {
+            self.fresh |= *seen | what != *seen;
+            *seen |= what;
+        }
+    }
+
+    pub(crate) fn take_fresh(&mut self) -> bool {
+        std::mem::take(&mut self.fresh)
+    }
+
+    /// Ways of contacts and outputs that were seen, on and off, and twice the number of those that ran.
+    pub(crate) fn both_ways(&self) -> (usize, usize) {
+        let told = self.operations.iter().filter(|seen| **seen & (ON | OFF) != 0);
+        told.fold((0, 0), |(ways, all), seen| (ways + (seen & (ON | OFF)).count_ones() as usize, all + 2))
+    }
+}
+
+impl domore::engine::Watch for Seen {
+    #[inline]
+    fn contact(&mut self, operation: u32, on: bool) {
+        self.note(operation, if on { ON } else { OFF });
+    }
+
+    #[inline]
+    fn compare(&mut self, operation: u32, a: Num, b: Num, on: bool) {
+        let near = match (a, b) {
+            (Num::Int(a), Num::Int(b)) => match a.saturating_sub(b) {
+                0 => EQUAL,
+                -1 => BELOW,
+                1 => ABOVE,
+                _ => 0,
+            },
+            _ => 0,
+        };
+        self.note(operation, near | if on { ON } else { OFF });
+    }
+
+    #[inline]
+    fn power(&mut self, operation: u32, on: bool) {
+        self.note(operation, if on { ON } else { OFF });
+    }
 }
 
 /// An SLC 500 or MicroLogix program.
@@ -275,6 +350,14 @@ impl Side for DoMore {
 
     fn scan(&mut self, dt: Duration) {
         self.machine.scan(dt);
+    }
+
+    fn scan_seen(&mut self, dt: Duration, seen: &mut Seen) {
+        self.machine.scan_watched(dt, seen);
+    }
+
+    fn operations(&self) -> usize {
+        self.program.operations() as usize
     }
 
     fn leave_run(&mut self) {

@@ -201,6 +201,7 @@ pub fn describe(report: &Report, names: &[String; 2]) -> Value {
                 matches!(kind, GoalKind::Equal | GoalKind::JustBelow | GoalKind::JustAbove)
             })),
         },
+        "other_coverage": coverage(report.other_coverage),
         "rungs": rungs,
         "impossible": report.impossible_goals().map(goal).collect::<Value>(),
         "difference": found,
