@@ -534,17 +534,17 @@ fn shifts_and_sequencers_step_on() {
             "XIC B3:2/0 BSR #B10:1 R6:1 N11:10/15 16",
             "XIC B3:2/0 BSL #B10:1 R6:3 R6:3/UL 37",
             "XIC B3:2/0 BSR #B10:1 R6:3 R6:3/UL 37",
+            "XIC B3:2/0 SQO #N11:0 00FFh N7:3 R6:0 5 0",
+            "XIC B3:2/0 SQO #N11:0 #N11:10 O:0.0 R6:0 5 0",
+            "XIC B3:2/0 SQO #N11:0 -1 T4:1.PRE R6:0 5 0",
+            "XIC B3:2/0 SQC #N11:0 000Fh N7:3 R6:0 5 0",
+            "XIC B3:2/0 SQL #N11:0 N7:3 R6:0 5 0",
         ],
         Verdict::Exact,
     );
     check(
         S3,
         &[
-            "XIC B3:2/0 SQO #N11:0 00FFh N7:3 R6:0 5 0",
-            "XIC B3:2/0 SQO #N11:0 #N11:10 O:0.0 R6:0 5 0",
-            "XIC B3:2/0 SQO #N11:0 -1 T4:1.PRE R6:0 5 0",
-            "XIC B3:2/0 SQC #N11:0 000Fh N7:3 R6:0 5 0",
-            "XIC B3:2/0 SQL #N11:0 N7:3 R6:0 5 0",
             "XIC B3:2/0 FFL N7:3 #N11:0 R6:0 5 0\nXIC B3:2/1 FFU #N11:0 N7:4 R6:0 5 0",
             "XIC B3:2/0 LFL N7:3 #N11:0 R6:0 5 0\nXIC B3:2/1 LFU #N11:0 N7:4 R6:0 5 0",
         ],

@@ -2,8 +2,8 @@
 //!
 //! Every instruction that writes a word widens what is known of it, until nothing changes any more;
 //! the order of the program plays no part. So an index that is always masked or only made of bits is
-//! known to stay in its file. What is written from outside (a terminal, a message) is not considered:
-//! the report says so.
+//! known to stay in its file. A word the program never writes is there for somebody outside to write:
+//! it can have any value.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -64,6 +64,18 @@ pub(super) struct Ranges {
 struct File {
     size: usize,
     words: Vec<Range>,
+    /// Words the program writes.
+    written: Vec<bool>,
+}
+
+impl File {
+    fn join(&mut self, first: usize, count: usize, range: impl Fn(usize) -> Range) {
+        let words = self.words.iter_mut().zip(&mut self.written).skip(first).take(count);
+        for (index, (word, written)) in words.enumerate() {
+            *word = word.join(range(index));
+            *written = true;
+        }
+    }
 }
 
 /// Rounds after which whatever still grows can have any value.
@@ -75,24 +87,35 @@ impl Ranges {
         for file in &image.data_files {
             let known = matches!(file.file_type, FileType::N | FileType::B | FileType::T | FileType::C | FileType::R);
             if known {
-                let words = file.words.iter().map(|word| Range::constant(*word as i16)).collect();
+                let words: Vec<_> = file.words.iter().map(|word| Range::constant(*word as i16)).collect();
                 let size = usize::from(file.words_per_element.max(1));
-                ranges.files.insert((file.file_type, file.number), File { size, words });
+                let written = vec![false; words.len()];
+                ranges.files.insert((file.file_type, file.number), File { size, words, written });
             }
         }
-        let mut masked = HashMap::new();
+        let (mut masked, mut bounded) = (HashMap::new(), HashMap::new());
         for rung in image.program_files.iter().flat_map(|file| &file.rungs) {
             masked_sums(&rung.series, &mut masked, 0);
+            bounded_sums(&rung.series, &mut bounded, 0);
         }
         for round in 0..ROUNDS + 4 {
             let before = ranges.files.clone();
             for rung in image.program_files.iter().flat_map(|file| &file.rungs) {
                 for instruction in rung.instructions() {
-                    match masked.get(&std::ptr::from_ref(instruction)) {
-                        Some(mask) => ranges.write(instruction.operands.get(2), Range::mask(*mask)),
-                        None => ranges.apply(instruction),
+                    let this = std::ptr::from_ref(instruction);
+                    match (masked.get(&this), bounded.get(&this)) {
+                        (Some(mask), _) => ranges.write(instruction.operands.get(2), Range::mask(*mask)),
+                        (None, Some(highest)) => {
+                            let low = ranges.read(instruction.operands.get(2)).low;
+                            ranges.write(instruction.operands.get(2), Range::between(low.min(*highest), *highest));
+                        }
+                        (None, None) => ranges.apply(instruction),
                     }
                 }
+            }
+            if round == 0 {
+                ranges.open_unwritten();
+                continue;
             }
             let mut changed = false;
             for (key, file) in &mut ranges.files {
@@ -110,6 +133,18 @@ impl Ranges {
         }
         // Not settled: nothing is known.
         Ranges::default()
+    }
+
+    /// What the program does not write, others may; presets and lengths stay what they are set to.
+    fn open_unwritten(&mut self) {
+        let plain = |key: &(FileType, u16)| matches!(key.0, FileType::N | FileType::B);
+        for file in self.files.iter_mut().filter(|(key, _)| plain(key)).map(|(_, file)| file) {
+            for (word, written) in file.words.iter_mut().zip(&file.written) {
+                if !written {
+                    *word = FULL;
+                }
+            }
+        }
     }
 
     /// Lowest and highest value of the word at a direct address.
@@ -161,8 +196,7 @@ impl Ranges {
             let Some(file) = self.files.get_mut(&(file_type, file)) else { return };
             // A structure without a member is all of its words.
             let count = if address.word.is_none() && address.bit.is_none() { file.size } else { 1 };
-            let words = file.words.iter_mut().skip(word).take(count);
-            words.for_each(|word| *word = word.join(range));
+            file.join(word, count, |_| range);
             return;
         }
         let number = address.file.number();
@@ -170,7 +204,7 @@ impl Ranges {
             .files
             .iter_mut()
             .filter(|(key, _)| key.0 == address.file_type && number.is_none_or(|number| number == key.1));
-        chosen.for_each(|(_, file)| file.words.iter_mut().for_each(|word| *word = word.join(range)));
+        chosen.for_each(|(_, file)| file.join(0, usize::MAX, |_| range));
     }
 
     /// One bit changes.
@@ -183,9 +217,9 @@ impl Ranges {
         let word = Address { bit: None, ..address.clone() };
         match self.place(&Address { word: word.word.or(Some(0)), ..word.clone() }) {
             Some((file_type, file, index)) if bit != 0xFFFF => {
-                let found = self.files.get_mut(&(file_type, file)).and_then(|file| file.words.get_mut(index));
-                if let Some(word) = found {
-                    *word = word.join(Range::mask(word.ones | bit));
+                if let Some(file) = self.files.get_mut(&(file_type, file)) {
+                    let ones = file.words.get(index).map_or(0xFFFF, |word| word.ones);
+                    file.join(index, 1, |_| Range::mask(ones | bit));
                 }
             }
             _ => self.write(
@@ -295,8 +329,7 @@ impl Ranges {
             (Some((file_type, number, word)), Some(length)) => {
                 if let Some(file) = self.files.get_mut(&(file_type, number)) {
                     let range = if file.size == 1 { value } else { FULL };
-                    let words = file.words.iter_mut().skip(word).take(length.saturating_mul(file.size));
-                    words.for_each(|word| *word = word.join(range));
+                    file.join(word, length.saturating_mul(file.size), |_| range);
                 }
             }
             _ => self.write(at(1), FULL),
@@ -323,9 +356,7 @@ impl Ranges {
             .map(|file| file.words.iter().skip(from).take(words).copied().collect())
             .unwrap_or_default();
         let Some(file) = self.files.get_mut(&(to_type, to_file)) else { return };
-        for (index, word) in file.words.iter_mut().skip(to).take(words).enumerate() {
-            *word = word.join(source.get(index).copied().unwrap_or(FULL));
-        }
+        file.join(to, words, |index| source.get(index).copied().unwrap_or(FULL));
     }
 
     /// Everything an instruction writes can have any value.
@@ -377,6 +408,51 @@ fn note_masked(first: &Instruction, second: &Instruction, found: &mut HashMap<*c
     if let Some(mask) = mask_behind(first, second) {
         found.insert(std::ptr::from_ref(first), mask);
     }
+}
+
+/// Counting up that a comparison right before it ends: `LES N7:0 100 ADD N7:0 1 N7:0`, with the highest
+/// result of each.
+fn bounded_sums(series: &Series, found: &mut HashMap<*const Instruction, i32>, depth: usize) {
+    if depth > MAX_DEPTH {
+        return;
+    }
+    for (element, next) in series.iter().zip(series.iter().skip(1)) {
+        let Element::Instruction(compare) = element else { continue };
+        let sum = match next {
+            Element::Instruction(sum) => Some(sum),
+            Element::Branch(branch) => match branch.legs.first().and_then(|leg| leg.first()) {
+                Some(Element::Instruction(sum)) => Some(sum),
+                _ => None,
+            },
+        };
+        if let Some(sum) = sum
+            && let Some(highest) = highest_sum(compare, sum)
+        {
+            found.insert(std::ptr::from_ref(sum), highest);
+        }
+    }
+    for element in series {
+        let Element::Branch(branch) = element else { continue };
+        branch.legs.iter().for_each(|leg| bounded_sums(leg, found, depth + 1));
+    }
+}
+
+/// The highest result of `ADD x n x` behind `LES x k` or `LEQ x k`.
+fn highest_sum(compare: &Instruction, sum: &Instruction) -> Option<i32> {
+    let ([word, limit], [a, b, result]) = (compare.operands.as_slice(), sum.operands.as_slice()) else { return None };
+    let last = match compare.mnemonic.name()? {
+        "LES" => 1,
+        "LEQ" => 0,
+        _ => return None,
+    };
+    let step = if a == word { b } else { a };
+    let direct = word.address().is_some_and(Address::is_direct);
+    if sum.mnemonic != "ADD" || !direct || result != word || (a != word && b != word) {
+        return None;
+    }
+    let number = |operand: &Operand| i32::try_from(operand.constant()?.as_integer()?).ok();
+    let (limit, step) = (number(limit)?, number(step).filter(|step| *step >= 0)?);
+    limit.checked_sub(last)?.checked_add(step).filter(|highest| (0..=32_767).contains(highest))
 }
 
 /// The mask that the second instruction puts on the result of the first, a sum.
@@ -437,6 +513,7 @@ mod tests {
         assert_eq!(word("OTE N7:0/15", "N7:0"), (-32_768, 32_767));
         assert_eq!(word("MOV 5 N7:0\nMOV N7:0 N7:1\nMOV -2 N7:0", "N7:1"), (-2, 5));
         assert_eq!(word("MOV 5 N7:[N7:3]", "N7:0"), (0, 5));
+        assert_eq!(word("MOV N7:1 N7:0", "N7:0"), (-32_768, 32_767), "N7:1 is for somebody else to write");
         assert_eq!(word("MOV T4:0.ACC N7:0\nMOV 99 T4:0.PRE\nTON T4:0 0.01 10 0", "N7:0"), (0, 99));
         assert_eq!(word("OTE N7:0/2\nCOP #N7:0 #N7:3 3\nFLL 0 #N7:0 3", "N7:3"), (0, 4));
         assert_eq!(word("MOV C5:0.ACC N7:0", "N7:0"), (-32_768, 32_767));
@@ -446,8 +523,15 @@ mod tests {
     fn sequencers_stay_inside_their_length() {
         let rungs = "SQO #N7:10 00FFh T4:1.PRE R6:0 4 0\nTON T4:1 1.0 25 0";
         assert_eq!(word(rungs, "R6:0.POS"), (0, 4));
-        assert_eq!(word(rungs, "T4:1.PRE"), (0, 15));
+        assert_eq!(word(rungs, "T4:1.PRE"), (0, 255));
         assert_eq!(word(&format!("{rungs}\nMOV -1 R6:0.POS"), "R6:0.POS"), (-1, 4));
         assert_eq!(word(&format!("{rungs}\nCOP #N7:0 #R6:0 1"), "R6:0.POS"), (-32_768, 32_767));
+    }
+
+    #[test]
+    fn counting_up_that_a_comparison_ends_is_bounded() {
+        assert_eq!(word("CLR N7:1\nLES N7:1 12 BST ADD N7:1 1 N7:1 NXB OTL B3:0/0 BND", "N7:1"), (0, 12));
+        assert_eq!(word("LEQ N7:1 12 ADD N7:1 2 N7:1", "N7:1"), (0, 14));
+        assert_eq!(word("LES N7:2 12 ADD N7:1 1 N7:1", "N7:1"), (-32_768, 32_767), "another word is compared");
     }
 }
