@@ -6,11 +6,12 @@ use std::path::Path;
 
 use convert::from_rss;
 use convert::migrate::{self, Options, Verdict};
-use ladder::Source;
+use ladder::{Force, Source};
 
 #[path = "../../../tests/src/corpus.rs"]
 #[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
 mod corpus;
+mod migrate_support;
 
 fn read(path: &Path) -> Option<ladder::Project> {
     let project = rss::Project::read(&std::fs::read(path).expect("file"), rss::Mode::Permissive).ok()?;
@@ -96,4 +97,53 @@ fn rungs_hold() {
         println!("{count:6} {reason}");
     }
     assert!(low.is_empty(), "below 90 %: {low:#?}");
+}
+
+/// Scans of each program beside what it was migrated to.
+const SCANS: usize = 60;
+
+#[test]
+fn programs_stay_equal() {
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
+    let (mut ran, mut differ) = (0, Vec::new());
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let name = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
+        let migration = migrate::migrate(&project.main, &[], &Options::default()).expect("it migrates");
+        // Forces are the original's alone.
+        let forced = project.main.data_files.iter().flat_map(|file| &file.forces).any(|force| *force != Force::NONE);
+        if migration.count(Verdict::Person) > 0 || migration.rungs.is_empty() || forced {
+            continue;
+        }
+        let Ok(mut both) = migrate_support::Both::with(&project.main, migration) else { continue };
+        let mut dice = migrate_support::Dice(0x5EED | 1);
+        both.set_clocks();
+        both.enter_run();
+        for scan in 0..SCANS {
+            for word in 0..both.input_words() {
+                both.input(word, dice.next() as u16 & dice.next() as u16);
+            }
+            if scan == SCANS / 2 {
+                both.stop();
+                both.enter_run();
+            }
+            let steps = [0, 1, 7, 10, 13, 30, 250, 1000];
+            let step = steps.get(dice.below(steps.len() as u64) as usize).copied().unwrap_or(1);
+            if let Some(difference) = both.scan(std::time::Duration::from_millis(step)) {
+                differ.push(format!("{name}: {difference}"));
+                break;
+            }
+            if !both.running() {
+                break;
+            }
+        }
+        ran += 1;
+    }
+    println!("{ran} programs ran {SCANS} scans beside what they were migrated to, {} differ", differ.len());
+    for difference in &differ {
+        println!("{difference}");
+    }
+    assert!(ran > 100, "only {ran} programs ran");
+    assert!(differ.is_empty(), "{} programs differ", differ.len());
 }

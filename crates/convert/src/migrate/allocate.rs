@@ -361,7 +361,7 @@ impl Places {
             block if block.is_bits() => {
                 let number = first + offset * 16;
                 // Words are put together on boundaries of 16 only.
-                if number % 16 != 0 {
+                if !number.is_multiple_of(16) {
                     return None;
                 }
                 format!("{}:SW", Element { block, number })
@@ -381,7 +381,7 @@ impl Places {
             Block::Sl => 42,
             _ => return None,
         };
-        (offset % per == 0).then_some(Element { block: span.at.block, number: span.at.number + offset / per })
+        offset.is_multiple_of(per).then_some(Element { block: span.at.block, number: span.at.number + offset / per })
     }
 
     /// The place of bit 0 of a B word in C, or of a word elsewhere, for run-time numbers: block, number

@@ -145,6 +145,15 @@ fn status_words(context: &mut Context<'_>) -> Vec<Rung> {
         }
         rungs.push(rung(e, "S:4, the free-running clock"));
     }
+    if context.status_words.contains(&35) {
+        // The time of the last scan: 100 microseconds on MicroLogix 1100 to 1500, else milliseconds.
+        let (elapsed, word) = (context.elapsed(), context.status_word(35));
+        let units = if context.slc_like() { elapsed.clone() } else { format!("{elapsed} * 10") };
+        let mut e = Emitter::new();
+        e.and_compare(Relation::Greater, &elapsed, "0");
+        e.math(&word, &format!("IF({units} > 65535, -1, (({units} + 32768) & 65535) - 32768)"));
+        rungs.push(rung(e, "S:35, the time of the last scan"));
+    }
     let clock: Vec<_> = CLOCK.iter().filter(|(word, _)| context.status_words.contains(word)).collect();
     if !clock.is_empty() {
         let mut e = Emitter::new();

@@ -178,7 +178,7 @@ impl Context<'_> {
     pub fn any_long(&mut self, operands: &[&Operand]) -> bool {
         operands.iter().any(|operand| {
             matches!(operand, Operand::Address(address)
-                if matches!(address.bit, None) && (address.file_type == FileType::L || is_long_member(address)))
+                if address.bit.is_none() && (address.file_type == FileType::L || is_long_member(address)))
         })
     }
 

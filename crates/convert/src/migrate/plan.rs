@@ -225,16 +225,15 @@ pub(super) fn interrupts(image: &Image) -> BTreeMap<u16, Interrupt> {
         found.insert(file, Interrupt::Fault);
     }
     let rules = instr::exec::Rules::of(image.processor.family);
-    if rules.lineage != instr::exec::Lineage::Mx {
-        if let Some(file) = status(31).filter(is_file) {
-            // S:2/10 of SLC 5/03 and higher: milliseconds instead of 10 ms. S:2/1: enabled.
-            let control = status(2).unwrap_or(0);
-            let fine = control & 1 << 10 != 0 && rules.lineage == instr::exec::Lineage::S3;
-            let unit = if fine { 1 } else { 10 };
-            let period = u32::from(status(30).unwrap_or(0)) * unit;
-            let enabled = control & 2 != 0;
-            found.insert(file, Interrupt::Timed(if enabled { period } else { 0 }, unit));
-        }
+    let status_file = rules.lineage != instr::exec::Lineage::Mx;
+    if let Some(file) = status(31).filter(|file| status_file && is_file(file)) {
+        // S:2/10 of SLC 5/03 and higher: milliseconds instead of 10 ms. S:2/1: enabled.
+        let control = status(2).unwrap_or(0);
+        let fine = control & 1 << 10 != 0 && rules.lineage == instr::exec::Lineage::S3;
+        let unit = if fine { 1 } else { 10 };
+        let period = u32::from(status(30).unwrap_or(0)) * unit;
+        let enabled = control & 2 != 0;
+        found.insert(file, Interrupt::Timed(if enabled { period } else { 0 }, unit));
     }
     for file in &image.function_files {
         if !matches!(file.file_type, FileType::STI | FileType::EII | FileType::HSC) {

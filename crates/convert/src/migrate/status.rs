@@ -20,7 +20,7 @@ enum Word {
 fn word_kind(word: u16) -> Word {
     match word {
         0 | 2 | 5 | 13 | 14 | 24 => Word::Kept,
-        1 | 4 | 37..=42 | 53 => Word::Computed,
+        1 | 4 | 35 | 37..=42 | 53 => Word::Computed,
         _ => Word::Foreign,
     }
 }
@@ -78,7 +78,9 @@ impl Context<'_> {
                 Ok(())
             }
             0 | 2 | 13 | 14 | 24 => Ok(()),
-            1 | 6 | 4 => Err(Person::new(Mark::Status, format!("{address} is written: the controller's own state"))),
+            1 | 4 | 6 | 35 => {
+                Err(Person::new(Mark::Status, format!("{address} is written: the controller's own state")))
+            }
             37..=42 | 53 => Err(Person::new(
                 Mark::Clock,
                 format!("{address} is written: setting the clock has no counterpart here"),

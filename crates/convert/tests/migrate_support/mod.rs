@@ -58,16 +58,27 @@ pub(crate) struct Both {
 impl Both {
     pub(crate) fn new(image: &Image, options: &Options) -> Both {
         let migration = migrate::migrate(image, &[], options).expect("it migrates");
+        Both::with(image, migration).unwrap_or_else(|why| panic!("{why}"))
+    }
+
+    /// Both sides of a migration; why one of them does not run.
+    pub(crate) fn with(image: &Image, migration: Migration) -> Result<Both, String> {
         let text = domore::text::write(&migration.project);
         let reading = domore::text::read(&text).expect("the text is read back");
         assert!(reading.diagnostics.is_empty(), "{:?}\n{text}", reading.diagnostics);
         let program = engine::Program::compile(&reading.project, &engine::Options::default())
-            .unwrap_or_else(|refusals| panic!("{refusals:#?}\n{text}"));
+            .map_err(|refusals| format!("{refusals:#?}\n{text}"))?;
         let domore = engine::Machine::new(program);
-        let program = sim::Program::compile(image, &sim::Options::default()).expect("the original compiles");
+        let program = sim::Program::compile(image, &sim::Options::default());
+        let program = program.map_err(|refusals| format!("the original: {refusals:?}"))?;
         let slc = sim::Machine::new(program);
+        let facts = migrate::facts::Facts::of(image);
         let (mut inputs, mut pairs) = (Vec::new(), Vec::new());
         for span in migration.places.spans() {
+            // Strings and what the controller itself keeps are not compared here.
+            if span.at.block.name() == "SL" || span.file_type.is_function_file() {
+                continue;
+            }
             let step = if matches!(span.at.block.name(), "D" | "R") { 2 } else { 1 };
             for index in (0..span.words).step_by(step) {
                 let address = span.address(index).expect("address");
@@ -76,18 +87,22 @@ impl Both {
                     2 => places.element(span.file_type, span.file, span.first_word + index).map(|e| e.to_string()),
                     _ => places.word(span.file_type, span.file, span.first_word + index),
                 };
-                let text = text.expect("a place");
+                let Some(text) = text else { continue };
+                if slc.get(&address).is_err() {
+                    continue;
+                }
                 let domore = domore.handle(&text).unwrap_or_else(|error| panic!("{text}: {error:?}"));
                 let pair = Pair { slc: address, domore, text, kind: span.file_type };
                 match span.file_type {
                     FileType::I => inputs.push(pair),
                     // Of the status file what the program can see.
                     FileType::S if !matches!(index, 0 | 4 | 5 | 13 | 14 | 24) => {}
+                    FileType::S if !facts.names_status(u16::try_from(index).unwrap_or(0)) => {}
                     _ => pairs.push(pair),
                 }
             }
         }
-        Both { slc, domore, migration, inputs, pairs, scans: 0 }
+        Ok(Both { slc, domore, migration, inputs, pairs, scans: 0 })
     }
 
     pub(crate) fn enter_run(&mut self) {
@@ -99,6 +114,28 @@ impl Both {
     pub(crate) fn stop(&mut self) {
         self.slc.enter_program();
         self.domore.enter_program();
+    }
+
+    /// Sets the clocks of both sides to the same moment.
+    pub(crate) fn set_clocks(&mut self) {
+        let fields = ["Year", "Month", "Day", "Hour", "Minute", "Second", "DayOfWeek"];
+        for (index, (field, value)) in fields.iter().zip([2024, 5, 14, 10, 59, 30, 2]).enumerate() {
+            let words = [Address::element(FileType::RTC, 0, 0).with_word(index as u16), {
+                let word = if index == 6 { 53 } else { 37 + index as u16 };
+                Address::element(FileType::S, 2, word)
+            }];
+            for word in words {
+                // A controller has the one or the other.
+                let _ = self.slc.set(&word, &Value::Word(value));
+            }
+            // The day of the week follows from the date.
+            let _ = self.domore.set(&format!("SDT0.{field}"), &engine::Value::Integer(value.into()));
+        }
+    }
+
+    /// How many input words there are.
+    pub(crate) fn input_words(&self) -> usize {
+        self.inputs.len()
     }
 
     /// Writes an input word on both sides.
