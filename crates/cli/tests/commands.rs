@@ -249,3 +249,26 @@ fn a_reversed_range_is_named() {
     let output = rungs(&["show", "motor/motor.RSS", "--rung", "5..2"]);
     assert!(String::from_utf8_lossy(&output.stderr).contains("the range is reversed"));
 }
+
+#[test]
+fn a_bit_that_no_word_has_is_not_reported_on() {
+    let output = rungs(&["xref", "motor/motor.RSS", "B3:0/17"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("`B3:0/17` is no address"));
+}
+
+#[test]
+fn a_length_of_zero_does_not_hide_a_file_from_the_cross_reference() {
+    let folder = folder("length");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let program = "START Bul.1763 % Bul.1763     MicroLogix 1100 Series B %\n\nLADDER 2\n\
+                   SOR XIC B3:9/0 FFL N7:0 #N13:0 R6:0 8 0 EOR\nSOR XIC B3:9/0 BSL #B3:0 R6:1 I:0/0 16 EOR\n\n\
+                   DATA R6:0\n% .CTL .LEN .POS %\n0X0000 0 0 % R6:0 %\n0X0000 0 0 % R6:1 %\n";
+    std::fs::write(folder.join("z.SLC"), program).expect("written");
+    text(&["build", &path("z.SLC"), "-o", &path("z.RSS"), "--force"]);
+    for address in ["#N13:0", "N13:2", "B3:0"] {
+        let found = &json(&["xref", &path("z.RSS"), address, "--json"])[0]["addresses"][0]["accesses"];
+        let may = found.as_array().expect("accesses").iter().any(|it| it["certainty"] == "may");
+        assert!(may, "{address}: {found}");
+    }
+}

@@ -176,3 +176,26 @@ fn what_a_file_will_not_hold_is_told() {
         assert!(notes.iter().any(|note| note.starts_with(expected)), "{expected}: {notes:#?}");
     }
 }
+
+#[test]
+fn any_character_of_a_comment_survives_the_text() {
+    let text = format!("{START}SOR XIC B3:0/0 OTE B3:0/1 EOR\n");
+    let mut project = convert::slc::project::read(&text).expect("an SLC text");
+    let comment = ladder::Comment {
+        text: "a\u{1}b\u{1B}[31m\u{0}\r\n\u{B}c".to_owned(),
+        title: "\u{7F}".to_owned(),
+        owner: ladder::CommentOwner::Rung { file: 2, rung: 0 },
+    };
+    project.main.program_files[2].rungs[0].comment = Some(comment.clone());
+    let bytes = convert::slc::encode(&convert::slc::project::export(&project.main).file.write());
+    let back = convert::open(&bytes, "a.SLC", Mode::Strict).expect("our own text");
+    assert_eq!(back.main.program_files[2].rungs[0].comment, Some(comment));
+}
+
+#[test]
+fn strict_reading_names_the_deviation_once() {
+    let text = format!("{START}sor XIC B3:0/0 eor\n");
+    let error = convert::open(text.as_bytes(), "a.SLC", Mode::Strict).expect_err("a deviation").to_string();
+    assert!(error.starts_with("strict reading: line 4: expected a rung"), "{error}");
+    assert_eq!(error.matches("found").count(), 1, "{error}");
+}

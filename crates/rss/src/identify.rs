@@ -99,7 +99,10 @@ fn as_text(head: &[u8]) -> Option<String> {
         _ => {}
     }
     let body = head.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(head);
-    let odd = body.iter().filter(|&&b| b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0C | 0x1A)).count();
+    let odd = |b: u8| b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r' | 0x0C | 0x1A);
+    // A comment of a program can hold any character: what begins like an SLC text is one all the same.
+    let begins_slc = body.trim_ascii_start().starts_with(b"START ");
+    let odd = if begins_slc { 0 } else { body.iter().filter(|&&b| odd(b)).count() };
     let high = body.iter().filter(|&&b| b >= 0x7F).count();
     let utf8 = std::str::from_utf8(body).is_ok_and(|_| odd == 0);
     (utf8 || (odd == 0 && high * 10 <= body.len())).then(|| String::from_utf8_lossy(body).into_owned())
@@ -145,7 +148,7 @@ mod tests {
             .into_iter()
             .chain("<?xml?>\n<RSLogix5000Content>".encode_utf16().flat_map(u16::to_le_bytes))
             .collect();
-        let cases: [(&[u8], Foreign); 15] = [
+        let cases: [(&[u8], Foreign); 16] = [
             (b"", Foreign::Empty),
             (b"%PDF-1.5\n", Foreign::Pdf),
             (b"\0\0%PDF-1.5\n", Foreign::Pdf),
@@ -158,6 +161,7 @@ mod tests {
             (b"IE_VER := 2.8;\nCONTROLLER c (", Foreign::L5k),
             (b"START 1747-L40A % fixed %\n\nLADDER 2\n", Foreign::SlcText),
             (b"  SOR XIC B3:0/0 OTE B3:0/1 EOR", Foreign::SlcText),
+            (b"START Bul.1766 % x %\nLADDER 2\n% TITLE\x01\x1B\0 %\n", Foreign::SlcText),
             (b"Dear reader,\r\nno ladder here.", Foreign::Text),
             (&[0; 600], Foreign::Zeros),
             (b"\x01\x02\x03\x04\x80", Foreign::Unknown { start: [1, 2, 3, 4, 0x80, 0, 0, 0] }),

@@ -38,6 +38,12 @@ pub fn run(arguments: &XrefArguments) -> Result<Outcome, Error> {
     })
 }
 
+/// A bit beyond the sixteen of a word, or the 32 of a long word.
+fn has_no_such_bit(address: &Address) -> bool {
+    let bits = if address.file_type == ladder::FileType::L { 32 } else { 16 };
+    address.bit.as_ref().and_then(ladder::Place::number).is_some_and(|bit| bit >= bits)
+}
+
 struct Report<'r> {
     opened: &'r Opened,
     xref: &'r CrossReference<'r>,
@@ -52,6 +58,9 @@ struct Report<'r> {
 impl Report<'_> {
     fn find(&mut self, text: &str) {
         match self.xref.find(text) {
+            Some(Found::Address(group)) if group.accesses.is_empty() && has_no_such_bit(&group.address) => {
+                self.unknown.push(text.to_owned());
+            }
             Some(Found::Address(group)) => self.groups.get_or_insert_default().push(group),
             Some(Found::File { groups, .. }) => self.groups.get_or_insert_default().extend(groups),
             Some(Found::ProgramFile(number)) => {
