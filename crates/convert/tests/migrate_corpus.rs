@@ -147,3 +147,29 @@ fn programs_stay_equal() {
     assert!(ran > 100, "only {ran} programs ran");
     assert!(differ.is_empty(), "{} programs differ", differ.len());
 }
+
+#[test]
+fn only_confirmed_forms_are_used_when_asked_for() {
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
+    let mut found: BTreeMap<(String, &str), usize> = BTreeMap::new();
+    let (mut rungs, mut persons) = (0, 0);
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let options = Options { only_confirmed: true };
+        let migration = migrate::migrate(&project.main, &[], &options).expect("it migrates");
+        rungs += migration.rungs.len();
+        persons += migration.count(Verdict::Person);
+        for form in migrate::forms::unconfirmed(&migration.project) {
+            *found.entry((form.form, form.evidence)).or_default() += form.uses;
+        }
+    }
+    println!("{rungs} rungs, {persons} need a person");
+    println!("{found:#?}");
+    // A call has flags whatever they mean.
+    let inferred: Vec<_> = found
+        .keys()
+        .filter(|(form, evidence)| matches!(*evidence, "inferred" | "third-party") && !form.starts_with("CALL"))
+        .collect();
+    assert!(inferred.is_empty(), "{inferred:?}");
+}

@@ -89,7 +89,7 @@ fn timers() {
         SLC,
         "XIC I:0/0 RTO T4:1 1.0 5 0",
         "STR X0; DUPBOOL; AND N27:15; ANDN N27:13; ANDLT N29 N28; MATH D1 \"D1 + D0\"; \
-         MATH N29 \"IF(N29 + D1 / 1000 > N28, N28, N29 + D1 / 1000)\"; MATH D1 \"IF(N29 >= N28, 0, D1 % 1000)\"; POPBOOL; \
+         MATH N29 \"IF(N29 + D1 / 1000 > N28, N28, N29 + D1 / 1000)\"; MATH D1 \"IF(N29 < N28, D1 % 1000, 0)\"; POPBOOL; \
          DUPBOOL; ANDGE N29 N28; SET N27:13; POPBOOL; DUPBOOL; ANDN N27:13; SET N27:14; NOT; RST N27:14; NOT; POPBOOL; \
          SET N27:15; NOT; RST N27:15",
     );

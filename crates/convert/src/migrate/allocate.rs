@@ -158,12 +158,17 @@ pub struct Places {
     points: BTreeMap<(FileType, u16, u32, u16), Element>,
     /// First free element per block: what follows is for helpers.
     next: BTreeMap<Block, u32>,
+    /// Bits are not put together to words.
+    only_confirmed: bool,
 }
 
 impl Places {
     /// The allocation of an image without a person's choices: deterministic.
-    pub fn automatic(image: &Image, facts: &Facts) -> Places {
-        let mut places = Places::default();
+    ///
+    /// `only_confirmed`: points and relays are never read as words (`C0:SW`), so a B file of which words are
+    /// used lies in N.
+    pub fn automatic(image: &Image, facts: &Facts, only_confirmed: bool) -> Places {
+        let mut places = Places { only_confirmed, ..Places::default() };
         places.io(image, facts);
         // N7 first: its numbers stay what people know.
         let mut files: Vec<_> = image.data_files.iter().collect();
@@ -203,6 +208,7 @@ impl Places {
         let block = match file_type {
             FileType::I | FileType::O | FileType::M0 | FileType::M1 => return,
             FileType::Unused | FileType::Reserved | FileType::Unknown(_) => return,
+            FileType::B if self.only_confirmed && facts.file(FileType::B, number).words => Block::N,
             FileType::B if !facts.file(FileType::B, number).dynamic => Block::C,
             FileType::F => Block::R,
             FileType::L => Block::D,
@@ -361,7 +367,7 @@ impl Places {
             block if block.is_bits() => {
                 let number = first + offset * 16;
                 // Words are put together on boundaries of 16 only.
-                if !number.is_multiple_of(16) {
+                if self.only_confirmed || !number.is_multiple_of(16) {
                     return None;
                 }
                 format!("{}:SW", Element { block, number })

@@ -141,7 +141,7 @@ impl Migration {
 /// A row of the map that does not fit the program, or places that overlap.
 pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migration, MapError> {
     let facts = Facts::of(image);
-    let mut places = Places::automatic(image, &facts);
+    let mut places = Places::automatic(image, &facts, options.only_confirmed);
     map_file::apply(&mut places, map)?;
     let plan = plan::plan(image);
     let mut context = Context::new(image, &facts, options, places);

@@ -242,7 +242,12 @@ impl Context<'_> {
             self.condition(Mark::AsyncIo, format!("{address} is module memory: here it is plain memory"));
         }
         let text = self.places.word(file_type, file, word).ok_or_else(|| {
-            Person::new(Mark::Operand, format!("{address}: its points lie apart in the map, so it is no word"))
+            let why = if self.options.only_confirmed {
+                "points and relays as a word: the text form is not confirmed by Designer"
+            } else {
+                "its points lie apart in the map, so it is no word"
+            };
+            Person::new(Mark::Operand, format!("{address}: {why}"))
         })?;
         Ok(Target { text, width: Width::Word, plain: true })
     }

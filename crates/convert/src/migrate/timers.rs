@@ -64,7 +64,7 @@ impl Timer {
             let text = format!("{}: not executed yet since RUN", parts.name());
             fresh = context.helper(Block::C, &name, &text);
             context.needs.set.insert(fresh.clone());
-            let gap = format!("IF({now} >= {last}, {now} - {last}, {now} + 1000000000 - {last})");
+            let gap = format!("IF({now} < {last}, {now} + 1000000000 - {last}, {now} - {last})");
             e.always(|e| {
                 e.math(&gone, &gap);
                 e.mov(&now, &last);
@@ -99,7 +99,7 @@ impl Timer {
         }
         e.math(part, &format!("{part} + {elapsed}"));
         e.math(acc, &format!("IF({acc} + {part} / {base} > {pre}, {pre}, {acc} + {part} / {base})"));
-        e.math(part, &format!("IF({acc} >= {pre}, 0, {part} % {base})"));
+        e.math(part, &format!("IF({acc} < {pre}, {part} % {base}, 0)"));
     }
 
     /// With power: ACC and the part of a tick become 0.

@@ -50,7 +50,7 @@ pub(crate) struct Both {
     pub(crate) slc: sim::Machine,
     pub(crate) domore: engine::Machine,
     pub(crate) migration: Migration,
-    inputs: Vec<Pair>,
+    inputs: Vec<Vec<Pair>>,
     pairs: Vec<Pair>,
     scans: usize,
 }
@@ -87,18 +87,29 @@ impl Both {
                     2 => places.element(span.file_type, span.file, span.first_word + index).map(|e| e.to_string()),
                     _ => places.word(span.file_type, span.file, span.first_word + index),
                 };
-                let Some(text) = text else { continue };
                 if slc.get(&address).is_err() {
                     continue;
                 }
-                let domore = domore.handle(&text).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-                let pair = Pair { slc: address, domore, text, kind: span.file_type };
+                let handle = |text: &str| domore.handle(text).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+                // Words that have no form of their own are compared bit by bit.
+                let parts: Vec<Pair> = match text {
+                    Some(text) => {
+                        vec![Pair { slc: address, domore: handle(&text), text, kind: span.file_type }]
+                    }
+                    None => (0..16)
+                        .filter_map(|bit| {
+                            let text = places.bit(span.file_type, span.file, span.first_word + index, bit)?;
+                            let slc = address.clone().with_bit(bit);
+                            Some(Pair { slc, domore: handle(&text), text, kind: span.file_type })
+                        })
+                        .collect(),
+                };
                 match span.file_type {
-                    FileType::I => inputs.push(pair),
+                    FileType::I => inputs.push(parts),
                     // Of the status file what the program can see.
                     FileType::S if !matches!(index, 0 | 4 | 5 | 13 | 14 | 24) => {}
                     FileType::S if !facts.names_status(u16::try_from(index).unwrap_or(0)) => {}
-                    _ => pairs.push(pair),
+                    _ => pairs.extend(parts),
                 }
             }
         }
@@ -140,9 +151,14 @@ impl Both {
 
     /// Writes an input word on both sides.
     pub(crate) fn input(&mut self, word: usize, value: u16) {
-        let Some(pair) = self.inputs.get(word) else { return };
-        self.slc.set(&pair.slc, &Value::Word(value as i16)).expect("an input");
-        self.domore.set_number(pair.domore, domore::memory::Num::Int(i64::from(value as i16)));
+        for pair in self.inputs.get(word).into_iter().flatten() {
+            let (slc, domore) = match pair.slc.bit.as_ref().and_then(ladder::Place::number) {
+                Some(bit) => (Value::Bit(value >> bit & 1 != 0), i64::from(value >> bit & 1)),
+                None => (Value::Word(value as i16), i64::from(value as i16)),
+            };
+            self.slc.set(&pair.slc, &slc).expect("an input");
+            self.domore.set_number(pair.domore, domore::memory::Num::Int(domore));
+        }
     }
 
     /// Writes a word of the data table on both sides.
@@ -181,6 +197,7 @@ impl Both {
             let domore = self.domore.value(pair.domore);
             let equal = match (&slc, &domore) {
                 (Value::Word(a), engine::Value::Integer(b)) => i64::from(*a) == *b,
+                (Value::Bit(a), engine::Value::Bit(b)) => a == b,
                 (Value::Long(a), engine::Value::Integer(b)) => i64::from(*a) == *b,
                 (Value::Float(a), engine::Value::Real(b)) => a.to_bits() == b.to_bits() || a == b,
                 _ => false,
