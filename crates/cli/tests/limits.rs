@@ -162,7 +162,7 @@ fn texts_of_any_size() {
         ("unreadable", many("SOR FOO 1 EOR"), "rungs"),
         ("short", many("SOR A"), "at most 65535 rungs"),
         ("empty", many("SOR EOR"), "at most 65535 rungs"),
-        ("junk", many("zz"), "kept"),
+        ("junk", many("zz"), "the project does not hold this line"),
         ("moves", program(repeated("SOR MOV #N7:1 #N9:1 MOV N[N7:1]:[N7:2] N7:[N7:3] EOR", 64_000)), "are left out"),
         ("data", data, "of this one are left out"),
         ("comment", program(["SOR TND EOR".to_owned(), format!("{title}{} %", "x\n".repeat(1_900_000))]), ""),
