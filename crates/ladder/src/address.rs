@@ -284,6 +284,7 @@ impl<'a> Reader<'a> {
         let start = self.at;
         let file_type = self.file_type(start)?;
         let file = match (self.peek(), file_type.implied_file()) {
+            (Some(b'/'), Some(number)) if file_type == FileType::S => Place::Number(number),
             (Some(b':'), Some(number)) => Place::Number(number),
             _ => self.place(depth)?,
         };
@@ -372,7 +373,14 @@ impl<'a> Reader<'a> {
     fn spread_file_bit(&self, address: &mut Address) {
         let Some(bit) = address.bit.as_ref().and_then(Place::number) else { return };
         let width = address.file_type.bits_per_word();
-        if matches!(address.file_type, FileType::T | FileType::C | FileType::R) {
+        if matches!(address.file_type, FileType::T | FileType::C) {
+            return;
+        }
+        if address.file_type == FileType::R {
+            // Three words an element; its flags, the first, are written without a word.
+            address.element = Place::Number(bit / 48);
+            address.word = Some(bit % 48 / 16).filter(|word| *word > 0);
+            address.bit = Some(Place::Number(bit % 16));
             return;
         }
         address.element = Place::Number(bit / width);
@@ -470,6 +478,11 @@ mod tests {
             ("I:1/3", "I:1.0/3"),
             ("I:0/23", "I:0.1/7"),
             ("B3/17", "B3:1/1"),
+            ("S/31", "S:1/15"),
+            ("S2/31", "S:1/15"),
+            ("R6/61", "R6:1/DN"),
+            ("R6/20", "R6:0.LEN/4"),
+            ("R6:2/RN", "R6:2/IN"),
             ("T4:0/13", "T4:0/DN"),
             ("T4:0.0/15", "T4:0/EN"),
             ("T4:0.1", "T4:0.PRE"),

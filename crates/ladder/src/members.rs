@@ -148,6 +148,10 @@ const TABLE: &[Member] = &[
     bit(PTO, "CS", 1, 5, true),
 ];
 
+/// Second names: bit 9 of a control element is IN for shifts and sequencers and RN for ASCII ports
+/// (1747-RM001G 1-8). Such a name is read; what is written is the name of the table.
+const ALIASES: [(FileType, &str, &str); 1] = [(R, "RN", "IN")];
+
 /// All members of a type, in word and bit order of the table.
 pub fn members_of(file_type: FileType) -> impl Iterator<Item = &'static Member> {
     TABLE.iter().filter(move |m| m.file_type == file_type)
@@ -155,6 +159,8 @@ pub fn members_of(file_type: FileType) -> impl Iterator<Item = &'static Member> 
 
 /// The member a person means by `name`, upper or lower case.
 pub fn member_by_name(file_type: FileType, name: &str) -> Option<&'static Member> {
+    let alias = ALIASES.iter().find(|row| row.0 == file_type && row.1.eq_ignore_ascii_case(name));
+    let name = alias.map_or(name, |row| row.2);
     members_of(file_type).find(|m| m.name.eq_ignore_ascii_case(name))
 }
 
@@ -167,6 +173,15 @@ pub fn member_name(file_type: FileType, word: u16, bit: Option<u16>) -> Option<&
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn second_names_lead_to_members() {
+        for (file_type, alias, name) in ALIASES {
+            let member = member_by_name(file_type, &alias.to_lowercase()).expect(alias);
+            assert_eq!(member.name, name);
+            assert!(members_of(file_type).all(|member| member.name != alias), "{alias}");
+        }
+    }
 
     #[test]
     fn names_and_places_are_unique_per_type() {
