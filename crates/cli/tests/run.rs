@@ -55,6 +55,13 @@ fn a_table_shows_changes_only() {
 }
 
 #[test]
+fn branches_of_a_traced_rung_are_marked() {
+    let table = motor(&["--trace-rung", "0"]);
+    assert!(table.contains("rung 2:0  BST ━[XIC I:0.0/0]"), "{table}");
+    assert!(table.contains(" NXB ━[XIC B3:0/0]") && table.contains(" BND ━[XIC I:0.0/1]"), "{table}");
+}
+
+#[test]
 fn json_lines_end_with_a_summary() {
     let lines = motor(&["--watch", "T4:0", "--format", "json", "--trace-rung", "1"]);
     let parse = |line: &str| serde_json::from_str::<serde_json::Value>(line).expect("JSON");

@@ -10,7 +10,7 @@ use sim::scenario::{Controller, Literal, parse_duration, value_for};
 use sim::{Machine, Options, Program, Recorder, Unsupported};
 
 use super::test::reasons;
-use super::trace::{Column, Row, RungColumn, writer};
+use super::trace::{Column, Row, RungColumn, parts, writer};
 use super::{ImageChoice, open};
 use crate::args::RunArguments;
 use crate::do_more::{self, DoMore};
@@ -233,7 +233,8 @@ fn rung(image: &Image, text: &str) -> Result<RungColumn, Error> {
     let rung =
         rung.ok_or_else(|| wrong(format!("program file {file} has rungs 0 to {}", rungs.len().saturating_sub(1))))?;
     let text = |instruction| convert::slc::rung::instruction_text(instruction, Some(image.family()));
-    Ok(RungColumn { file, rung: number, instructions: rung.instructions().map(text).collect() })
+    let instructions = rung.instructions().map(text).collect();
+    Ok(RungColumn { file, rung: number, instructions, parts: parts(&rung.series) })
 }
 
 /// One column per value to follow; elements spread over their members.

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
-use ladder::{Value, format_float};
+use ladder::{Element, Series, Value, format_float};
 use serde_json::{Map, json};
 use sim::PowerFlow;
 use sim::scenario::Controller;
@@ -26,6 +26,42 @@ pub struct RungColumn {
     pub rung: u16,
     /// Its instructions as text, in stored order.
     pub instructions: Vec<String>,
+    /// Instructions and branches in the order they are read.
+    pub parts: Vec<Part>,
+}
+
+/// A piece of a rung on one line.
+pub enum Part {
+    /// The instruction of this number.
+    Instruction(usize),
+    /// Where a branch begins, goes on with the next leg, and ends: `BST`, `NXB`, `BND`.
+    Mark(&'static str),
+}
+
+/// The pieces of a rung.
+pub fn parts(series: &Series) -> Vec<Part> {
+    fn walk(series: &Series, next: &mut usize, parts: &mut Vec<Part>) {
+        for element in series {
+            match element {
+                Element::Instruction(_) => {
+                    parts.push(Part::Instruction(*next));
+                    *next += 1;
+                }
+                Element::Branch(branch) => {
+                    for (leg, inner) in branch.legs.iter().enumerate() {
+                        parts.push(Part::Mark(if leg == 0 { "BST" } else { "NXB" }));
+                        walk(inner, next, parts);
+                    }
+                    if !branch.legs.is_empty() {
+                        parts.push(Part::Mark("BND"));
+                    }
+                }
+            }
+        }
+    }
+    let mut parts = Vec::new();
+    walk(series, &mut 0, &mut parts);
+    parts
 }
 
 /// What one scan left.
@@ -143,12 +179,21 @@ impl Writer for Table<'_> {
     }
 }
 
-/// A rung in one scan, power marked at every instruction: `2:4  ━XIC B3:0/0━ ╌TON T4:0╌`.
+/// A rung in one scan, power marked at every instruction and branches as rung text writes them:
+/// `rung 2:4  BST ━[XIC B3:0/0]━ NXB ━[XIC B3:0/1]╌ BND ━[OTE B3:0/2]━`.
 fn power(row: &Row<'_>, rung: &RungColumn) -> String {
     let mut text = format!("rung {}:{} ", rung.file, rung.rung);
     let mut executed = false;
-    for (index, instruction) in rung.instructions.iter().enumerate() {
+    for part in &rung.parts {
         let line = |on: bool| if on { '━' } else { '╌' };
+        let index = match part {
+            Part::Mark(mark) => {
+                text.push_str(&format!(" {mark}"));
+                continue;
+            }
+            Part::Instruction(index) => *index,
+        };
+        let instruction = rung.instructions.get(index).map_or("", String::as_str);
         match flow(row, rung, index) {
             Some(flow) => {
                 executed = true;
