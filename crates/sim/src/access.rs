@@ -161,7 +161,7 @@ impl Machine {
         let location = self.locate(address)?;
         let unfit = |machine: &Machine| {
             let kind = machine.kind(address).unwrap_or(Kind::Word);
-            AccessError::Unfit { address: address.clone(), kind, value: format!("{value:?}") }
+            AccessError::Unfit { address: address.clone(), kind, value: shown(value) }
         };
         let at = location.word;
         match location.width {
@@ -309,6 +309,17 @@ impl Machine {
     /// All data words, files one after the other: for comparing whole states.
     pub fn data(&self) -> &[u16] {
         &self.state.mem
+    }
+}
+
+/// A value in messages.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Text(text) if text.chars().count() > 82 => {
+            format!("a string of {} characters, more than 82,", text.chars().count())
+        }
+        Value::Text(text) => format!("\"{text}\""),
+        value => crate::scenario::text(value),
     }
 }
 

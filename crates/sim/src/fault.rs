@@ -43,12 +43,17 @@ pub(crate) mod code {
     pub(crate) const WATCHDOG: u16 = 0x22;
     pub(crate) const STI_FILE: u16 = 0x23;
     pub(crate) const STI_PERIOD: u16 = 0x24;
+    pub(crate) const NESTING_STI: u16 = 0x25;
+    pub(crate) const NESTING_IO: u16 = 0x26;
+    pub(crate) const NESTING_FAULT_ROUTINE: u16 = 0x27;
     pub(crate) const FAULT_ROUTINE: u16 = 0x28;
     pub(crate) const OUTSIDE_DATA: u16 = 0x29;
     pub(crate) const OUTSIDE_FILE: u16 = 0x2A;
     pub(crate) const INDIRECT_FILE: u16 = 0x2B;
     pub(crate) const INDIRECT_ELEMENT: u16 = 0x2C;
     pub(crate) const INDIRECT_SUB: u16 = 0x2D;
+    pub(crate) const DII_SLOT: u16 = 0x2E;
+    pub(crate) const DII_FILE: u16 = 0x2F;
     pub(crate) const NESTING: u16 = 0x30;
     pub(crate) const UNSUPPORTED: u16 = 0x31;
     pub(crate) const SEQUENCER: u16 = 0x32;
@@ -67,12 +72,17 @@ const MEANINGS: &[(u16, &str)] = &[
     (code::WATCHDOG, "watchdog"),
     (code::STI_FILE, "invalid STI file"),
     (code::STI_PERIOD, "invalid STI period"),
+    (code::NESTING_STI, "too many nested subroutines in the STI routine"),
+    (code::NESTING_IO, "too many nested subroutines in the DII routine"),
+    (code::NESTING_FAULT_ROUTINE, "too many nested subroutines in the fault routine"),
     (code::FAULT_ROUTINE, "invalid fault routine file"),
     (code::OUTSIDE_DATA, "address outside the data space"),
     (code::OUTSIDE_FILE, "indexed address beyond its file"),
     (code::INDIRECT_FILE, "invalid indirect file"),
     (code::INDIRECT_ELEMENT, "invalid indirect element"),
     (code::INDIRECT_SUB, "invalid indirect bit or sub-element"),
+    (code::DII_SLOT, "invalid DII slot"),
+    (code::DII_FILE, "invalid DII file"),
     (code::NESTING, "too many nested subroutines"),
     (code::UNSUPPORTED, "unsupported instruction"),
     (code::SEQUENCER, "sequencer beyond its data file"),
@@ -93,7 +103,8 @@ pub(crate) fn meaning(code: u16) -> Option<&'static str> {
 /// no page was found, and they are taken as non-recoverable except those a routine can repair.
 pub(crate) fn class(code: u16) -> FaultClass {
     match code {
-        code::NO_MAIN | code::LABEL | code::FAULT_ROUTINE | code::NESTING => FaultClass::NonUser,
+        code::NO_MAIN | code::LABEL | code::FAULT_ROUTINE => FaultClass::NonUser,
+        code::NESTING | code::NESTING_STI | code::NESTING_IO | code::NESTING_FAULT_ROUTINE => FaultClass::NonUser,
         code::WATCHDOG | code::UNSUPPORTED | code::IN_INTERRUPT | code::RET_IN_MAIN => FaultClass::NonRecoverable,
         _ => FaultClass::Recoverable,
     }

@@ -22,8 +22,22 @@ const NAMED: [(FileType, &str, u16, u16); 6] = [
 /// Least and greatest value of the words of RTC:0 from the year to the second (1200 3-3).
 const CLOCK: [(u16, u16); 6] = [(1998, 2097), (1, 12), (1, 31), (0, 23), (0, 59), (0, 59)];
 
+/// `I/23` and `O0/5`: bits counted through the words of the controller's own points, slot 0. Which
+/// word of a chassis it is depends on the I/O configuration, so the data model reads no such text.
+fn linear(text: &str) -> Option<Address> {
+    let (file, bit) = text.split_once('/')?;
+    let file_type = match file.to_ascii_uppercase().as_str() {
+        "I" | "I1" => FileType::I,
+        "O" | "O0" => FileType::O,
+        _ => return None,
+    };
+    let bit: u16 = bit.parse().ok()?;
+    let file = file_type.implied_file().unwrap_or(0);
+    Some(Address::element(file_type, file, 0).with_word(bit / 16).with_bit(bit % 16))
+}
+
 /// The place of a text such as `RTC:0/BL`.
-pub(crate) fn named(text: &str) -> Option<Address> {
+fn named(text: &str) -> Option<Address> {
     let (element, name) = text.split_once('/')?;
     let mut address = Address::parse(element).ok().filter(|address| address.word.is_none())?;
     let row = NAMED.iter().find(|row| row.0 == address.file_type && row.1.eq_ignore_ascii_case(name))?;
@@ -34,13 +48,15 @@ pub(crate) fn named(text: &str) -> Option<Address> {
 
 /// An address of the data model, or one of the names above.
 pub(crate) fn address(text: &str) -> Result<Address, ladder::AddressError> {
-    Address::parse(text).or_else(|why| named(text).ok_or(why))
+    Address::parse(text).or_else(|why| named(text).or_else(|| linear(text)).ok_or(why))
 }
 
 /// The image with named bits in place of their texts, and the texts; `None` when it has none.
 pub(crate) fn resolve(image: &Image) -> Option<(Image, Vec<String>)> {
     let text = |operand: &Operand| match operand {
         Operand::Text(text) => named(text).is_some(),
+        // No symbol has a slash.
+        Operand::Symbol(text) => linear(text).is_some(),
         _ => false,
     };
     let mut instructions = image.ladder_files().flat_map(|f| f.rungs.iter()).flat_map(|r| r.instructions());
@@ -62,10 +78,12 @@ fn replace(series: &mut Series, found: &mut Vec<String>) {
         match element {
             Element::Instruction(instruction) => {
                 for operand in &mut instruction.operands {
-                    if let Operand::Text(text) = operand
-                        && let Some(address) = named(text)
-                    {
-                        found.push(std::mem::take(text));
+                    let address = match operand {
+                        Operand::Symbol(text) => linear(text),
+                        Operand::Text(text) => named(text).inspect(|_| found.push(text.clone())),
+                        _ => None,
+                    };
+                    if let Some(address) = address {
                         *operand = Operand::Address(address);
                     }
                 }
@@ -99,6 +117,14 @@ impl Machine {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn linear_bits_count_through_the_points_of_slot_0() {
+        let read = |text| address(text).map(|address| address.to_string()).ok();
+        assert_eq!(read("I/23").as_deref(), Some("I:0.1/7"));
+        assert_eq!(read("o0/5").as_deref(), Some("O:0.0/5"));
+        assert_eq!(read("I/x"), None);
+    }
 
     #[test]
     fn names_have_no_place_in_the_data_model() {

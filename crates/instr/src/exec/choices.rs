@@ -59,6 +59,8 @@ pub enum Choice {
     AciSigned,
     /// Storing a string clears the characters after its end.
     StringClearsRest,
+    /// AEX with fewer characters left than asked for is an error.
+    ExtractNeedsAll,
 }
 
 /// A row of [`LIST`].
@@ -241,6 +243,13 @@ pub const LIST: &[Row] = &[
         "characters behind the end of a stored string stay as they were",
         "they become 0",
         "not described; they are no part of the string",
+    ),
+    row(
+        Choice::ExtractNeedsAll,
+        "extract-needs-all",
+        "AEX takes the characters up to the end of the source when fewer are left than asked for",
+        "it sets S:5/15 and leaves its destination, as for an index behind the end",
+        "the page gives the end of the source as the limit; a summary of the errors reads as if it were one",
     ),
 ];
 

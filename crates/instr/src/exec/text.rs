@@ -160,11 +160,14 @@ pub fn acn(a: &[u16], b: &[u16]) -> Result<(Text, bool), StringError> {
 /// # Errors
 /// An empty source or a bad length, index or number outside 1 to 82, an index behind the end: the
 /// destination is not changed (printed).
-pub fn aex(source: &[u16], index: i32, number: i32) -> Result<Text, StringError> {
+pub fn aex(source: &[u16], index: i32, number: i32, rules: Rules) -> Result<Text, StringError> {
     let text = Text::read(source)?;
     let start = offset(index)?;
     let number = offset(number)? + 1;
     let rest = text.characters().get(start..).filter(|rest| !rest.is_empty()).ok_or(StringError)?;
+    if rest.len() < number && rules.has(Choice::ExtractNeedsAll) {
+        return Err(StringError);
+    }
     Ok(Text::cut(rest.iter().copied().take(number)).0)
 }
 

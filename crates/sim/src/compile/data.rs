@@ -49,21 +49,23 @@ impl Compiler<'_> {
             }
             "SQO" => {
                 let file = self.start(given.at(0))?;
-                let mask = self.stepped(given.at(1))?;
+                let long = self.is_long_file(given, 0) || self.is_long_file(given, 2);
+                let mask = self.stepped(given.at(1), long)?;
                 let dest = self.stepped_target(given.at(2))?;
                 let control = self.element(given.at(3), FileType::R)?;
                 self.always(Block::SequencerOutput { file, mask, dest, control })
             }
             "SQC" => {
                 let file = self.start(given.at(0))?;
-                let mask = self.stepped(given.at(1))?;
-                let source = self.stepped(given.at(2))?;
+                let long = self.is_long_file(given, 0) || self.is_long_file(given, 2);
+                let mask = self.stepped(given.at(1), long)?;
+                let source = self.stepped(given.at(2), long)?;
                 let control = self.element(given.at(3), FileType::R)?;
                 self.always(Block::SequencerCompare { file, mask, source, control })
             }
             "SQL" => {
                 let file = self.start(given.at(0))?;
-                let source = self.stepped(given.at(1))?;
+                let source = self.stepped(given.at(1), self.is_long_file(given, 0))?;
                 let control = self.element(given.at(2), FileType::R)?;
                 self.always(Block::SequencerLoad { file, source, control })
             }

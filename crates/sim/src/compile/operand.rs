@@ -47,10 +47,10 @@ impl Compiler<'_> {
     }
 
     /// A value or, written with `#`, a file.
-    pub(super) fn stepped(&mut self, operand: Option<&Operand>) -> Result<Stepped> {
+    pub(super) fn stepped(&mut self, operand: Option<&Operand>, long: bool) -> Result<Stepped> {
         match operand {
             Some(Operand::Address(address)) if address.indexed => Ok(Stepped::File(self.start(operand)?)),
-            other => Ok(Stepped::Value(self.source(other, false)?)),
+            other => Ok(Stepped::Value(self.source(other, long)?)),
         }
     }
 

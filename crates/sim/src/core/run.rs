@@ -23,8 +23,23 @@ pub(crate) enum Ending {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Context {
     Main,
+    /// A timed interrupt, or one of a function file.
     Interrupt,
+    /// The discrete input interrupt.
+    Discrete,
     FaultRoutine,
+}
+
+impl Context {
+    /// The fault of a JSR too deep: SLC processors tell by its code from where the calls began.
+    fn too_deep(self, mx: bool) -> u16 {
+        match self {
+            Context::Interrupt if !mx => code::NESTING_STI,
+            Context::Discrete => code::NESTING_IO,
+            Context::FaultRoutine if !mx => code::NESTING_FAULT_ROUTINE,
+            _ => code::NESTING,
+        }
+    }
 }
 
 /// Watching is decided at compile time so that scans without a trace pay nothing.
@@ -231,7 +246,9 @@ impl Core<'_> {
                         counted_from = at + 1;
                         match program.entry(file as u16) {
                             _ if self.s.executed > self.s.limit => failed = Some(code::WATCHDOG),
-                            _ if depth >= levels || depth >= LEVELS => failed = Some(code::NESTING),
+                            _ if depth >= levels || depth >= LEVELS => {
+                                failed = Some(context.too_deep(program.traits.mx()));
+                            }
                             None => failed = Some(code::UNSUPPORTED),
                             Some(start) => {
                                 if W::ON {

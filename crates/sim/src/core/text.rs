@@ -84,7 +84,8 @@ impl Core<'_> {
 
     pub(crate) fn extract(&mut self, source: Start, index: Source, number: Source, dest: Start) -> Exec<()> {
         let (index, number) = (self.integer(index)?, self.integer(number)?);
-        let result = text::aex(self.string(source)?, index, number);
+        let rules = self.p.rules;
+        let result = text::aex(self.string(source)?, index, number, rules);
         match self.checked(result) {
             Some(found) => self.put_string(dest, &found),
             None => Ok(()),

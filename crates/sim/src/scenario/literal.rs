@@ -93,7 +93,7 @@ fn same_float(expected: f32, found: f32) -> bool {
 }
 
 /// A value as failures show it: words in decimal and hex.
-pub(super) fn text(value: &Value) -> String {
+pub(crate) fn text(value: &Value) -> String {
     match value {
         Value::Bit(bit) => u8::from(*bit).to_string(),
         Value::Word(word) if (0..10).contains(word) => word.to_string(),

@@ -33,6 +33,7 @@ use ladder::Family;
 
 pub use controller::{Controller, Stop};
 pub use duration::parse_duration;
+pub(crate) use literal::text;
 pub use literal::{Literal, Mismatch, matches, value_for};
 pub use run::{Failure, Foreign, Found, Loader, Report, RunError, play, run};
 

@@ -32,7 +32,8 @@ impl Scenario {
     /// The first key that does not belong or whose value is not what belongs there.
     pub fn parse(text: &str) -> Result<Scenario> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let reader = Reader { text };
+        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at).collect();
+        let reader = Reader { text, breaks };
         let table = DeTable::parse(text).map_err(|error| ScenarioError {
             line: error.span().map_or(1, |span| reader.line(&span)),
             key: String::new(),
@@ -44,13 +45,13 @@ impl Scenario {
 
 struct Reader<'a> {
     text: &'a str,
+    /// Where its line breaks are: every value asks for its line.
+    breaks: Vec<usize>,
 }
 
 impl Reader<'_> {
     fn line(&self, span: &Range<usize>) -> u32 {
-        let before = self.text.as_bytes().get(..span.start).unwrap_or(self.text.as_bytes());
-        let breaks = before.iter().filter(|byte| **byte == b'\n').count();
-        u32::try_from(breaks).unwrap_or(u32::MAX).saturating_add(1)
+        u32::try_from(self.breaks.partition_point(|at| *at < span.start)).unwrap_or(u32::MAX).saturating_add(1)
     }
 
     fn error(&self, value: &Value<'_>, key: &str, message: impl Into<String>) -> ScenarioError {
@@ -319,7 +320,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Codes are printed in hex: `"0020"`, also with the marks of hex; `"none"` and 0 expect no fault. A
+    /// Codes are printed in hex: `"0020"`, also with the marks of hex; `"none"`, `""` and 0 expect no fault. A
     /// number without quotes has to say that it is hex: nobody means fault 14h by `20`.
     fn fault(&self, value: &Value<'_>, key: &str) -> Result<Spot<u16>> {
         let line = self.line(&value.span());
@@ -331,7 +332,7 @@ impl Reader<'_> {
         }
         let text = self.text(value, key)?;
         let lower = text.trim().to_ascii_lowercase();
-        if lower == "none" {
+        if lower.is_empty() || lower == "none" {
             return Ok(Spot { value: 0, line });
         }
         let marked = lower.starts_with("0x") || lower.ends_with('h');
@@ -454,7 +455,7 @@ mode   = "program-run"
             let scenario = Scenario::parse(&toml).expect(text);
             assert_eq!(scenario.steps[0].fault.as_ref().map(|fault| fault.value), Some(0x20), "{text}");
         }
-        for (value, code) in [("0x20", 0x20), ("\"none\"", 0), ("\"0000\"", 0)] {
+        for (value, code) in [("0x20", 0x20), ("\"none\"", 0), ("\"\"", 0), ("\"0000\"", 0)] {
             let toml = format!("ladder = \"OTE B3:0/0\"\n[[step]]\nfault = {value}\n");
             let scenario = Scenario::parse(&toml).expect(value);
             assert_eq!(scenario.steps[0].fault.as_ref().map(|fault| fault.value), Some(code), "{value}");

@@ -277,6 +277,9 @@ impl Player<'_> {
             self.assign(&step.set)?;
         }
         if let Some(edges) = &step.edges {
+            if !matches!(self.read(&edges.bit)?, Value::Bit(_)) {
+                return Err(at(edges.bit.line, format!("edges: {} is not a bit", edges.bit.value)));
+            }
             for _ in 0..edges.count {
                 for level in [false, true] {
                     self.write(&edges.bit, &Value::Bit(level))?;

@@ -96,15 +96,18 @@ fn concatenation() {
 
 #[test]
 fn extraction() {
-    let part = |index, number| aex(&element("abcdef"), index, number).map(|text| string(&text));
+    let part = |index, number| aex(&element("abcdef"), index, number, rules()).map(|text| string(&text));
     assert_eq!(part(2, 3), Ok("bcd".to_owned()));
     assert_eq!(part(5, 10), Ok("ef".to_owned()), "up to the end, no error");
     assert_eq!(part(6, 82), Ok("f".to_owned()));
     for (index, number) in [(0, 1), (1, 0), (7, 1), (83, 1), (1, 83), (-1, 1), (i32::MAX, i32::MIN)] {
         assert_eq!(part(index, number), Err(StringError), "{index} {number}");
     }
-    assert_eq!(aex(&element(""), 1, 1), Err(StringError));
-    assert_eq!(aex(&bad_length(), 1, 1), Err(StringError));
+    let all = rules().with(Choice::ExtractNeedsAll);
+    assert_eq!(aex(&element("abcdef"), 5, 3, all), Err(StringError));
+    assert_eq!(aex(&element("abcdef"), 5, 2, all).map(|text| string(&text)), Ok("ef".to_owned()));
+    assert_eq!(aex(&element(""), 1, 1, rules()), Err(StringError));
+    assert_eq!(aex(&bad_length(), 1, 1, rules()), Err(StringError));
 }
 
 #[test]
@@ -155,7 +158,7 @@ proptest! {
         match asc(&element(&what), index, &element(&text)) {
             Ok(0) => prop_assert!(!text[index as usize - 1..].contains(&what)),
             Ok(at) => {
-                let part = aex(&element(&text), at.into(), what.len() as i32).map(|part| string(&part));
+                let part = aex(&element(&text), at.into(), what.len() as i32, rules()).map(|part| string(&part));
                 prop_assert_eq!(part, Ok(what));
             }
             Err(_) => prop_assert!(index as usize > text.len()),
@@ -165,7 +168,7 @@ proptest! {
     #[test]
     fn any_words_are_survived(words in prop::collection::vec(any::<u16>(), 0..50), index: i32, number: i32) {
         let mode = rules().math(0);
-        let _ = (aci(&words, Width::Word, mode), acn(&words, &words), aex(&words, index, number));
+        let _ = (aci(&words, Width::Word, mode), acn(&words, &words), aex(&words, index, number, rules()));
         let _ = (asc(&words, index, &words), asr(&words, &words));
     }
 }
