@@ -174,6 +174,29 @@ pub fn slc_text(bytes: &[u8]) {
     }
 }
 
+/// SLC text migrated to Do-more, and the bytes as an address map.
+pub fn migration(bytes: &[u8]) {
+    use convert::migrate::{Options, map_file, migrate, report::Report};
+    let text = slc::decode(bytes);
+    let map = map_file::read(&text).unwrap_or_default();
+    assert_eq!(map_file::read(&map_file::write(&map)).unwrap_or_default(), map);
+    let Ok(project) = slc::project::read(&text) else { return };
+    let image = &project.main;
+    let rungs = image.ladder_files().flat_map(|file| file.rungs.iter().take_while(|rung| !rung.is_end())).count();
+    for only_confirmed in [false, true] {
+        let options = Options { only_confirmed };
+        let Ok(migration) = migrate(image, &map, &options).or_else(|_| migrate(image, &[], &options)) else { return };
+        assert_eq!(migration.rungs.len(), rungs, "a rung is lost");
+        let text = domore::text::write(&migration.project);
+        if let Ok(reading) = domore::text::read(&text) {
+            assert!(reading.diagnostics.is_empty(), "{:?}", reading.diagnostics.first());
+            assert!(domore::stack::check_project(&reading.project).is_empty());
+        }
+        let report = Report::new(&project.source, image, &migration, &options);
+        assert!(report.html().ends_with("</html>\n") && report.json().ends_with("}\n"));
+    }
+}
+
 /// A JSON document.
 pub fn json(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
