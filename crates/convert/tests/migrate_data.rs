@@ -480,6 +480,9 @@ fn addresses_decided_at_run_time() {
             "COP #N11:[N7:50] #N7:0 4",
             "COP #N7:0 #N11:[N7:51] 4",
             "COP #N11:[N7:50] #N11:[N7:51] 4",
+            "XIC N11:[N7:50]/[N7:51] OTE B3:1/0",
+            "XIC B3:2/0 OTL N11:[N7:50]/[N7:51]",
+            "XIC B3:2/0 OTE N11:[N7:50]/[N7:51]",
         ],
         Verdict::Condition,
     );

@@ -359,14 +359,24 @@ fn float_quotient(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, t
     if to.width == Width::Float {
         cx.condition(
             Mark::Fault,
-            "a float division by zero stores infinity there; here the destination keeps its value and the trap S:5/0 is set",
+            "a float division by zero sets the trap S:5/0 and stores infinity there; here the trap is set and a product \
+             beyond 3.4E38 is stored",
         );
+        // A product that overflows, whatever that is here: the nearest to infinity that can be written.
+        let huge = Value::real(1e38).text().to_owned();
+        let sign = relation(a, "<", &if a.is_float() { Value::real(0.0) } else { Value::integer(0) });
+        let zero = cx.scratch_bit(93);
         e.when(|e| {
             e.and_compare(Relation::Equal, &operand, none);
-            e.set(&trap);
+            e.hold(&zero);
         });
         e.when(|e| {
-            e.and_compare(Relation::NotEqual, &operand, none);
+            e.and(&zero);
+            e.set(&trap);
+            e.math(&super::store::destination(to), &format!("IF({sign}, -10.0, 10.0) * {huge}"));
+        });
+        e.when(|e| {
+            e.and_not(&zero);
             store_float(cx, e, &a.float_operation('/', &divisor), to);
         });
         return Ok(());

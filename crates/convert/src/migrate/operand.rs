@@ -382,12 +382,12 @@ impl Context<'_> {
             Place::Number(bit) => Ok(Bit::InWord { word: format!("{}[{number}]", block.name()), bit: bit.to_string() }),
             Place::Indirect(inner) => {
                 let index = self.index_term(inner)?;
-                let (file_type, file, word) = match self.places.word_of(&word_address) {
-                    Some(found) => found,
-                    None => return Err(Person::new(Mark::Indirect, format!("{address}: word and bit at run time"))),
-                };
-                let words = self.places.base(file_type, file, word).map_or(1, |base| base.words);
-                let through = word == 0 && words > 1;
+                // From element 0 on the bits of all words are numbered through; not where the element
+                // is decided at run time too.
+                let place = self.places.word_of(&word_address).filter(|place| place.2 == 0);
+                let words = place.and_then(|(file_type, file, word)| self.places.base(file_type, file, word));
+                let words = words.map_or(1, |base| base.words);
+                let through = words > 1;
                 let limit = if through { words.saturating_mul(16) - 1 } else { 15 };
                 // MicroLogix 1100 to 1500 read 0 past the last bit of a word and write nothing there.
                 let ends = !through && !self.slc_like();

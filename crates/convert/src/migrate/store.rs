@@ -235,8 +235,9 @@ pub(super) fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, targe
         }
         Width::Word => {
             let source = float_scratch(cx, e, result);
+            // Not-a-number is below nothing and takes the upper limit.
             let near = Value::expression(
-                format!("IF({source} > 40000.0, 40000.0, IF({source} < -40000.0, -40000.0, {source}))"),
+                format!("IF({source} < 40000.0, IF({source} < -40000.0, -40000.0, {source}), 40000.0)"),
                 Width::Float,
             );
             let whole = rounded(cx, e, &near).bounded(-40_000, 40_000);
@@ -247,7 +248,7 @@ pub(super) fn float(cx: &mut Context<'_>, e: &mut Emitter, result: &Value, targe
             // 2147483520 is the largest float that fits.
             let near = Value::expression(
                 format!(
-                    "IF({source} > 2147483520.0, 2147483520.0, IF({source} < -2147483648.0, -2147483648.0, {source}))"
+                    "IF({source} < 2147483520.0, IF({source} < -2147483648.0, -2147483648.0, {source}), 2147483520.0)"
                 ),
                 Width::Float,
             );
