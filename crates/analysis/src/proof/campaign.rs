@@ -78,6 +78,9 @@ pub(crate) struct Campaign<'c, B: Side> {
     pub(crate) stops: u64,
     pub(crate) time: Duration,
     budget: u64,
+    /// A timed interrupt runs in the original: times between scans stay short, so that it comes no more
+    /// than once between two of them.
+    short: bool,
     quiet: u64,
     /// The first difference, with all scans from power-up to it.
     pub(crate) found: Option<(Difference, Tape)>,
@@ -94,6 +97,8 @@ const PART_OF_ALL: u64 = 20;
 const PACES: [u32; 5] = [1, 7, 10, 13, 50];
 /// Longest time before a scan in a long wait, in microseconds. A controller's watchdog ends far longer ones.
 const LONGEST_PACE: u64 = 2_000_000;
+/// Longest time before a scan beside a timed interrupt, in microseconds: the shortest period there is.
+const SHORT_PACE: u32 = 10_000;
 /// Time before a scan where weeks are to pass, in microseconds: no controller scans so slowly, but what it
 /// counts must add up the same.
 const DAY_PACE: u32 = 3_599_987_000;
@@ -106,7 +111,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         goals: Goals,
         solver: &'c Solver<'c>,
         presets: Vec<(u32, u32)>,
-        (seed, budget): (u64, u64),
+        (seed, budget, short): (u64, u64, bool),
     ) -> Campaign<'c, B> {
         let seen = Seen::new(both.b.operations());
         Campaign {
@@ -130,6 +135,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             stops: 0,
             time: Duration::ZERO,
             budget,
+            short,
             quiet: 0,
             found: None,
         }
@@ -151,9 +157,11 @@ impl<'c, B: Side> Campaign<'c, B> {
             self.begin();
             match round % 8 {
                 0..3 => self.aim(),
+                3 if self.random.chance(1, 2) => self.to_a_preset(),
                 3 => self.wait_long(),
                 4 => self.change_mode(),
                 5 if round % 1024 == 5 => self.wait_days(),
+                5 => self.steady(),
                 _ => self.wander(),
             }
             if self.open() && self.both.a.stopped().is_some() && self.random.chance(1, 4) {
@@ -217,7 +225,7 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     /// One scan of both sides with the pending changes, and the comparison.
     fn scan(&mut self, program_run: bool, dt: u32) {
-        let dt = if program_run { 0 } else { dt };
+        let dt = if program_run { 0 } else { dt.min(if self.short { SHORT_PACE } else { u32::MAX }) };
         for set in self.pending.drain(..) {
             self.tape.set(set);
         }
@@ -437,6 +445,42 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.scans_of(8);
     }
 
+    /// To the millisecond a timer is done in: a preset that is off by one must show.
+    fn to_a_preset(&mut self) {
+        if self.random.chance(1, 2) {
+            self.change();
+        }
+        self.pace = 1000;
+        self.scans_of(2);
+        // Timers that are timing: their words follow their preset.
+        let timing: Vec<(u32, u32)> = self
+            .presets
+            .iter()
+            .copied()
+            .filter(|(preset, _)| self.both.a.word(preset - 16) & 0x6000 == 0x4000)
+            .collect();
+        let Some((preset, base)) = self.random.pick(&timing).copied() else { return self.wait_long() };
+        let left = |both: &Both<B>| {
+            let counts = i32::from(both.a.word(preset) as i16) - i32::from(both.a.word(preset + 16) as i16);
+            u64::from(counts.max(0).unsigned_abs()) * u64::from(base)
+        };
+        // Counts of the timer first, then milliseconds: part of a count may have passed already.
+        let mut most = LONGEST_WAIT;
+        while left(&self.both) > u64::from(base) && most > 0 && self.goes_on() {
+            let dt = (left(&self.both) - u64::from(base)).clamp(1, LONGEST_PACE / 1000);
+            self.scan(false, u32::try_from(dt * 1000).unwrap_or(u32::MAX));
+            most -= 1;
+        }
+        let fine = u64::from(base).min(60) + 3;
+        if base > 60 {
+            let coarse = self.random.below(base as usize) as u32;
+            if self.goes_on() {
+                self.scan(false, 1000 * coarse.max(1));
+            }
+        }
+        self.scans_of(fine);
+    }
+
     /// Past presets: one of them, or all one after the other.
     fn wait_long(&mut self) {
         let length = |both: &Both<B>, (preset, base): (u32, u32)| {
@@ -483,16 +527,34 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
     }
 
+    /// Many short scans of one length with hardly a change: parts of counts of slow timers must add up.
+    fn steady(&mut self) {
+        if self.random.chance(2, 3) {
+            self.change();
+        }
+        let scans = if self.pace == 1000 { 1100 } else { 250 };
+        for _ in 0..scans {
+            if !self.goes_on() {
+                return;
+            }
+            if self.random.chance(1, 80) {
+                self.change();
+            }
+            let pace = self.pace;
+            self.scan(false, pace);
+        }
+    }
+
     /// More time than any counter of milliseconds in 31 bits can hold: what runs for weeks must go on right.
     fn wait_days(&mut self) {
-        for _ in 0..700 {
+        for _ in 0..900 {
             if !self.goes_on() {
                 return;
             }
             if self.random.chance(1, 4) {
                 self.change();
             }
-            let dt = if self.random.chance(1, 4) { self.pace } else { DAY_PACE };
+            let dt = if self.random.chance(1, 5) { self.pace } else { DAY_PACE };
             self.scan(false, dt);
         }
     }

@@ -98,6 +98,19 @@ impl<T: Clone> Inputs<T> {
             values.dedup();
             inputs.add(a, b, (text, other), (at, kind), values, bounded, address.file_type == FileType::I);
         }
+        // Operators set counters: what follows must go on from there, up to the ends of their range.
+        for address in counted(image) {
+            let text = address.to_string();
+            if let Ok((at, Kind::Word)) = a.place(&text)
+                && seen.insert((at, Kind::Word))
+            {
+                let mut values = edges(Kind::Word);
+                values.extend(compared.get(&at).into_iter().flatten());
+                values.extend([0x7FFE, 0x8001]);
+                let other = pairs.other(at, Kind::Word);
+                inputs.add(a, b, (text, other), (at, Kind::Word), values, true, false);
+            }
+        }
         // Words of terminals that instructions take whole.
         for (at, own, other) in pairs.input_words() {
             let Ok(address) = Address::parse(&own) else { continue };
@@ -131,6 +144,20 @@ impl<T: Clone> Inputs<T> {
             (Err(why), _) | (_, Err(why)) => self.left_out.push((original, why)),
         }
     }
+}
+
+/// Accumulated values of the counters the program runs.
+fn counted(image: &Image) -> Vec<Address> {
+    let mut all = Vec::new();
+    for (_, instruction) in crate::instructions(image) {
+        if matches!(instruction.mnemonic.name(), Some("CTU" | "CTD"))
+            && let Some(address) = instruction.operands.first().and_then(Operand::address)
+            && address.is_direct()
+        {
+            all.push(address.clone().with_word(2));
+        }
+    }
+    all
 }
 
 /// The value stored at a place of the original.

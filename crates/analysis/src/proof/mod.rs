@@ -27,7 +27,7 @@ use std::collections::BTreeSet;
 
 use ladder::{Address, FileType, Image, Operand};
 
-use crate::CrossReference;
+use crate::{CallGraph, CrossReference, EntryKind};
 use campaign::{Both, Campaign};
 use goals::Goals;
 use inputs::Inputs;
@@ -129,7 +129,12 @@ pub fn prove_domore(
         (a, b) => return Report::impossible(a.err().into_iter().chain(b.err()).flatten().collect(), options),
     };
     let approximations = approximations(program.approximations().iter().map(ToString::to_string));
-    prove(original, a, DoMore::new(program), approximations, map, fates, options)
+    let mut report = prove(original, a, DoMore::new(program), approximations, map, fates, options);
+    if fates.is_none() {
+        let why = "which rung came from which is not known: a missing rung shows in behaviour only";
+        report.notes.push(why.to_owned());
+    }
+    report
 }
 
 type Compiled = (Vec<sim::Approximation>, Slc);
@@ -183,7 +188,13 @@ fn prove<B: Side>(
     let goals = Goals::new(image, &xref, &both.a);
     let solver = Solver::new(image, &both.a, inputs.all.iter().map(|input| (input.at, input.kind)));
     let base = Both { a: both.a.fork(), b: both.b.fork() };
-    let limits = (options.seed, options.scans);
+    let calls = CallGraph::build(image, &image.documentation);
+    let short = calls.files.iter().flat_map(|file| &file.entries).any(|it| it.kind == EntryKind::TimedInterrupt);
+    if short {
+        let why = "a timed interrupt runs in the original: scans were at most 10 ms apart";
+        report.notes.push(why.to_owned());
+    }
+    let limits = (options.seed, options.scans, short);
     let mut campaign = Campaign::new(both, &pairs, &inputs, goals, &solver, timers(image, &base.a), limits);
     campaign.run();
     report.take_run(&campaign, inputs.all.len());
@@ -201,10 +212,7 @@ fn prove<B: Side>(
 
 /// Checks that every rung has a fate; answers those left to a person.
 fn rungs(image: &Image, fates: Option<&[RungFate]>, report: &mut Report) -> BTreeSet<(u16, u32)> {
-    let Some(fates) = fates else {
-        report.notes.push("which rung came from which is not known: a missing rung shows in behaviour only".to_owned());
-        return BTreeSet::new();
-    };
+    let Some(fates) = fates else { return BTreeSet::new() };
     let known: BTreeSet<(u16, u32)> = fates.iter().map(|fate| (fate.file, fate.rung)).collect();
     for file in image.ladder_files() {
         for (number, rung) in (0..).zip(&file.rungs) {

@@ -95,6 +95,9 @@ pub struct Report {
     /// Contacts and outputs of the other program, seen on and off, of those that ran; nothing where that is
     /// not told.
     pub other_coverage: Coverage,
+    /// Instructions of the other program that were not seen both with and without power: code block, rung and
+    /// instruction, from 0. Those that only compute count where they were never executed with power.
+    pub other_missing: Vec<(usize, usize, usize)>,
     /// The first difference and how to see it.
     pub found: Option<(Difference, Counterexample)>,
     /// Why parts, or the whole, cannot be compared.
@@ -135,6 +138,7 @@ impl Report {
             inputs: 0,
             goals: Vec::new(),
             other_coverage: Coverage::default(),
+            other_missing: Vec::new(),
             found: None,
             incomparable: Vec::new(),
             missing_rungs: Vec::new(),
@@ -152,7 +156,10 @@ impl Report {
 
     pub(crate) fn take_map(&mut self, pairs: &Pairs, left_out: &[(String, String)]) {
         self.compared = pairs.compared();
-        self.unmapped = pairs.unmapped.iter().chain(&pairs.unusable).chain(left_out).cloned().collect();
+        self.unmapped = pairs.unmapped.iter().chain(left_out).cloned().collect();
+        // What the program uses of these rows is among the unmapped.
+        let unusable = pairs.unusable.iter().map(|(what, why)| format!("row of the map not used: {what}: {why}"));
+        self.notes.extend(unusable);
         self.unmapped.sort();
         self.unmapped.dedup();
     }
@@ -166,6 +173,9 @@ impl Report {
         self.inputs = inputs;
         let (reached, all) = campaign.seen.both_ways();
         self.other_coverage = Coverage { reached, all };
+        let spots = campaign.seen.missing().filter_map(|operation| campaign.both.b.spot(operation));
+        self.other_missing = spots.collect();
+        self.other_missing.dedup();
         self.goals.clone_from(&campaign.goals.all);
         if self.scans < 2 && campaign.found.is_none() {
             self.incomparable.push("the original stops in its first scan".to_owned());

@@ -71,6 +71,12 @@ pub trait Side: Sized {
         0
     }
 
+    /// Where an operation stands: code block, rung and instruction, all from 0.
+    fn spot(&self, operation: u32) -> Option<(usize, usize, usize)> {
+        let _ = operation;
+        None
+    }
+
     /// Leaves run.
     fn leave_run(&mut self);
 
@@ -112,6 +118,12 @@ impl Seen {
             self.fresh |= *seen | what != *seen;
             *seen |= what;
         }
+    }
+
+    /// Operations that ran, but not seen both on and off, or never ran at all.
+    pub(crate) fn missing(&self) -> impl Iterator<Item = u32> {
+        let open = |(_, seen): &(u32, &u8)| **seen & (ON | OFF) != ON | OFF;
+        (0..).zip(&self.operations).filter(open).map(|(number, _)| number)
     }
 
     pub(crate) fn take_fresh(&mut self) -> bool {
@@ -358,6 +370,10 @@ impl Side for DoMore {
 
     fn operations(&self) -> usize {
         self.program.operations() as usize
+    }
+
+    fn spot(&self, operation: u32) -> Option<(usize, usize, usize)> {
+        self.program.spot(operation)
     }
 
     fn leave_run(&mut self) {

@@ -4,7 +4,7 @@ use domore::{Instruction, Part, Project, Rung};
 
 /// What was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// A contact examined the other way round.
     ContactInverted,
     /// A number one higher or lower: presets, limits, initial values, factors.
@@ -25,20 +25,27 @@ pub enum Kind {
 
 /// A mutant: what was done and where.
 #[derive(Clone, Debug)]
-pub struct Mutant {
-    pub kind: Kind,
+pub(crate) struct Mutant {
+    pub(crate) kind: Kind,
+    /// Code block and rung, counted from 0, and the instruction; none for a whole rung.
+    pub(crate) place: (usize, usize, Option<usize>),
+    /// The rung was made from one of the original, and does not belong to the frame around them.
+    pub(crate) converted: bool,
     /// Code block, rung and change, in words.
-    pub what: String,
-    pub project: Project,
+    pub(crate) what: String,
+    pub(crate) project: Project,
 }
 
 /// All of them, in the order of the text.
-pub fn all(project: &Project) -> Vec<Mutant> {
+pub(crate) fn all(project: &Project) -> Vec<Mutant> {
     let mut mutants = Vec::new();
+    let mut blocks = 0;
     for (part, block) in project.parts.iter().enumerate() {
         let Part::Code(code) = block else { continue };
+        let block = blocks;
+        blocks += 1;
         for (number, rung) in code.rungs.iter().enumerate() {
-            for (kind, what, mutated) in of_rung(rung) {
+            for (kind, index, what, mutated) in of_rung(rung) {
                 let mut project = project.clone();
                 if let Some(Part::Code(code)) = project.parts.get_mut(part) {
                     match mutated {
@@ -47,21 +54,62 @@ pub fn all(project: &Project) -> Vec<Mutant> {
                     }
                 }
                 let what = format!("{} rung {}: {what}", code.name, number + 1);
-                mutants.push(Mutant { kind, what, project });
+                let mut lines = rung.comment.iter().flat_map(|comment| &comment.lines);
+                let converted = lines.any(|line| line.starts_with("SLC "));
+                mutants.push(Mutant { kind, place: (block, number, index), converted, what, project });
             }
         }
     }
     mutants
 }
 
-type Change = (Kind, String, Option<Rung>);
+/// Mutants that do what the program does, by argument: a bit is reset that nothing ever sets, or a constant is
+/// stored where the initial value is the same and nothing else writes.
+pub(crate) fn is_equivalent(mutant: &Mutant, project: &Project) -> bool {
+    let (block, rung, Some(index)) = mutant.place else { return false };
+    let Some(code) = project.code_blocks().nth(block) else { return false };
+    let Some(it) = code.rungs.get(rung).and_then(|rung| rung.instructions.get(index)) else { return false };
+    let all = || project.code_blocks().flat_map(|code| &code.rungs).flat_map(|rung| &rung.instructions);
+    let never_set = |bit: &str| {
+        let word = bit.split(':').next().unwrap_or(bit);
+        !all().any(|it| match it.mnemonic.as_str() {
+            "SET" | "OUT" => it.operand(0) == bit,
+            "MATH" => it.operand(0) == word,
+            "MOVE" => it.operand(1) == word,
+            _ => false,
+        })
+    };
+    match (it.mnemonic.as_str(), mutant.kind) {
+        ("RST", Kind::ResetRemoved) => never_set(it.operand(0)),
+        ("RST", Kind::AddressOffByOne) => {
+            let other = mutant.project.code_blocks().nth(block).and_then(|code| code.rungs.get(rung));
+            let other = other.and_then(|rung| rung.instructions.get(index));
+            never_set(it.operand(0)) && other.is_some_and(|other| never_set(other.operand(0)))
+        }
+        ("MOVE", Kind::InstructionDropped) => {
+            let (value, to) = (it.operand(0), it.operand(1));
+            let row = format!("{to} {to} {value}");
+            let writers = all().filter(|it| match it.mnemonic.as_str() {
+                "MATH" => it.operand(0) == to,
+                "MOVE" => it.operand(1) == to,
+                _ => false,
+            });
+            value.parse::<i64>().is_ok()
+                && writers.count() == 1
+                && all().any(|it| it.is("INIT") && it.operand(0).contains(&row))
+        }
+        _ => false,
+    }
+}
+
+type Change = (Kind, Option<usize>, String, Option<Rung>);
 
 fn of_rung(rung: &Rung) -> Vec<Change> {
     let mut changes = Vec::new();
     let acts = rung.instructions.iter().any(|it| !matches!(it.mnemonic.as_str(), "NOP" | "RET" | "END"));
     if acts {
         let text: Vec<String> = rung.instructions.iter().map(ToString::to_string).collect();
-        changes.push((Kind::RungDropped, format!("dropped {}", text.join("; ")), None));
+        changes.push((Kind::RungDropped, None, format!("dropped {}", text.join("; ")), None));
     }
     for (index, it) in rung.instructions.iter().enumerate() {
         let mut push = |kind, changed: Option<Instruction>| {
@@ -77,7 +125,7 @@ fn of_rung(rung: &Rung) -> Vec<Change> {
                     format!("{it} dropped")
                 }
             };
-            changes.push((kind, what, Some(mutated)));
+            changes.push((kind, Some(index), what, Some(mutated)));
         };
         if let Some(name) = inverted(&it.mnemonic) {
             push(Kind::ContactInverted, Some(renamed(it, &name)));

@@ -7,16 +7,16 @@ use convert::migrate::{Migration, Options, Verdict, migrate};
 use ladder::Image;
 
 /// A program and what a migration made of it.
-pub struct Migrated {
-    pub name: String,
-    pub image: Image,
-    pub project: domore::Project,
-    pub map: Vec<Mapping>,
-    pub fates: Vec<RungFate>,
+pub(crate) struct Migrated {
+    pub(crate) name: String,
+    pub(crate) image: Image,
+    pub(crate) project: domore::Project,
+    pub(crate) map: Vec<Mapping>,
+    pub(crate) fates: Vec<RungFate>,
 }
 
 impl Migrated {
-    pub fn of(path: &Path) -> Migrated {
+    pub(crate) fn of(path: &Path) -> Migrated {
         let bytes = std::fs::read(path).expect("the file is there");
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let project = convert::open(&bytes, &name, rss::Mode::Permissive).expect("reads");
@@ -45,12 +45,12 @@ fn fates(migration: &Migration) -> Vec<RungFate> {
 }
 
 /// The workspace.
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 /// Our own examples, and the programs of the corpus that must be proven, as far as they are here.
-pub fn proven() -> Vec<Migrated> {
+pub(crate) fn proven() -> Vec<Migrated> {
     let own = ["motor/motor.SLC", "batch/batch.SLC", "traffic_light/traffic_light.SLC"];
     let mut paths: Vec<PathBuf> = own.iter().map(|path| root().join("examples").join(path)).collect();
     let corpus = std::env::var_os("RUNGS_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
@@ -59,6 +59,8 @@ pub fn proven() -> Vec<Migrated> {
     } else {
         println!("skipped: corpus not present");
     }
+    let wanted = std::env::var("RUNGS_PROGRAM").unwrap_or_default();
+    paths.retain(|path| path.to_string_lossy().contains(&wanted));
     paths.iter().map(|path| Migrated::of(path)).collect()
 }
 
