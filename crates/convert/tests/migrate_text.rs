@@ -35,7 +35,7 @@ fn contacts_coils_and_branches() {
     becomes(
         SLC,
         "XIC I:0/0 BST OTE O:0/0 NXB XIC I:0/1 OTE O:0/1 NXB OTL O:0/2 BND",
-        "STR X0; DUPBOOL; OUT Y0; POPBOOL; DUPBOOL; AND X1; OUT Y1; POPBOOL; SET Y2",
+        "STR X0; OUT Y0; DUPBOOL; AND X1; OUT Y1; POPBOOL; SET Y2",
     );
     // A leg that is a wire makes the others beside it pointless.
     becomes(SLC, "BST XIC I:0/0 NXB BND OTE O:0/0", "STR ST1; OUT Y0");

@@ -276,12 +276,13 @@ impl Emitter {
         self.depth += 1;
     }
 
-    /// Drops the top of the stack, back to what was duplicated.
+    /// Drops the top of the stack, back to what was duplicated. Outputs alone need no copy of the power
+    /// flow: they stand one after another.
     pub fn pop(&mut self) {
-        if self.code.last().is_some_and(|last| last.is("DUPBOOL")) {
-            self.code.pop();
-        } else {
-            self.push(Instruction::new("POPBOOL", [""; 0]));
+        let opening = self.code.iter().rposition(|instruction| !is_output(instruction));
+        match opening.filter(|at| self.code.get(*at).is_some_and(|opening| opening.is("DUPBOOL"))) {
+            Some(at) => drop(self.code.remove(at)),
+            None => self.push(Instruction::new("POPBOOL", [""; 0])),
         }
         self.depth = self.depth.saturating_sub(1).max(1);
     }
