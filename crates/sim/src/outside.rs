@@ -2,7 +2,7 @@
 //! dates that do not exist, and keys of the data access tool toggle their latches. And the names of
 //! bits whose place in their function file nobody has published.
 
-use ladder::{Address, Element, FileType, Image, Operand, Place, Series};
+use ladder::{Address, Element, FileType, Image, Operand, Series};
 
 use crate::Machine;
 use crate::family::Lineage;
@@ -18,6 +18,20 @@ const NAMED: [(FileType, &str, u16, u16); 6] = [
     (FileType::DAT, "F2P", 127, 2),
     (FileType::DAT, "F2L", 127, 3),
 ];
+
+/// Status and command bits of a pulse train output (1100 p.136-137, 1400 p.146, some recalled): done, decelerating, run,
+/// accelerating, ramp profile, idle, error, normal operation, jog pulse and jog continuous with their
+/// states, enable hard stop, enabled. CS, the one whose place is known, is in the data model.
+const TRAIN: [&str; 14] = ["DN", "DS", "RS", "AS", "RP", "IS", "ED", "NS", "JPS", "JCS", "JP", "JC", "EH", "EN"];
+/// Those of a pulse width output (1200 6-10, some recalled).
+const WIDTH: [&str; 9] = ["DS", "RS", "AS", "PP", "IS", "ED", "NS", "EH", "EN"];
+
+/// The word behind the elements of pulse outputs where the simulator keeps these bits: projects store 8 to
+/// 15 words.
+pub(crate) const PULSE_WORD: u16 = 15;
+
+/// Pulse outputs, whose elements are [`PULSE_WORD`] words and the one behind them here.
+pub(crate) const PULSES: [FileType; 4] = [FileType::PTO, FileType::PTOX, FileType::PWM, FileType::PWMX];
 
 /// Least and greatest value of the words of RTC:0 from the year to the second (1200 3-3).
 const CLOCK: [(u16, u16); 6] = [(1998, 2097), (1, 12), (1, 31), (0, 23), (0, 59), (0, 59)];
@@ -36,14 +50,26 @@ fn linear(text: &str) -> Option<Address> {
     Some(Address::element(file_type, file, 0).with_word(bit / 16).with_bit(bit % 16))
 }
 
+fn pulse_bit(file_type: FileType, name: &str) -> Option<u16> {
+    let names: &[&str] = match file_type {
+        FileType::PTO | FileType::PTOX => &TRAIN,
+        FileType::PWM | FileType::PWMX => &WIDTH,
+        _ => return None,
+    };
+    let bit = names.iter().position(|known| known.eq_ignore_ascii_case(name))?;
+    u16::try_from(bit).ok()
+}
+
 /// The place of a text such as `RTC:0/BL`.
 fn named(text: &str) -> Option<Address> {
     let (element, name) = text.split_once('/')?;
-    let mut address = Address::parse(element).ok().filter(|address| address.word.is_none())?;
-    let row = NAMED.iter().find(|row| row.0 == address.file_type && row.1.eq_ignore_ascii_case(name))?;
-    address.word = Some(row.2);
-    address.bit = Some(Place::Number(row.3));
-    Some(address)
+    let address = Address::parse(element).ok().filter(|address| address.word.is_none())?;
+    let row = NAMED.iter().find(|row| row.0 == address.file_type && row.1.eq_ignore_ascii_case(name));
+    let (word, bit) = match row {
+        Some(row) => (row.2, row.3),
+        None => (PULSE_WORD, pulse_bit(address.file_type, name)?),
+    };
+    Some(address.with_word(word).with_bit(bit))
 }
 
 /// An address of the data model, or one of the names above.
@@ -133,6 +159,10 @@ mod tests {
             assert!(Address::parse(&text).is_err(), "{text}");
             assert!(address(&text.to_lowercase()).is_ok(), "{text}");
         }
+        for text in ["PTO:0/DN", "PTOX:1/EH", "PWM:0/IS", "PWMX:2/EN"] {
+            assert!(Address::parse(text).is_err() && named(text).is_some(), "{text}");
+        }
+        assert!(named("PWM:0/DN").is_none());
         assert!(address("RTC:0/XX").is_err() && address("N7:0/BL").is_err() && address("RTC:0.1/BL").is_err());
     }
 }

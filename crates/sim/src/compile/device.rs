@@ -79,8 +79,7 @@ impl Compiler<'_> {
             "PTO" | "PWM" => {
                 self.approximate(
                     instruction,
-                    "no pulses are produced: the places of its status bits in the function file were not found, so none of \
-                     them change",
+                    "no pulses are produced and its status bits stay as they are set: a scenario can set them by name",
                 );
                 self.always(Block::Pulse)
             }
@@ -163,7 +162,10 @@ impl Compiler<'_> {
                 self.always(Block::HighSpeedCounter { word })
             }
             _ => {
-                self.approximate(instruction, "no pulses reach the high-speed counter: it does nothing");
+                self.approximate(
+                    instruction,
+                    "no pulses reach the high-speed counter of a fixed SLC or MicroLogix 1000: it does nothing",
+                );
                 self.act(Block::Idle)
             }
         }

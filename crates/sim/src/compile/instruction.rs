@@ -7,6 +7,7 @@ use instr::parameters::time_base;
 use ladder::{FileType, Instruction, Operand};
 
 use super::Compiler;
+use super::lacks::fits;
 use super::operand::{Result, unusable};
 use crate::op::*;
 
@@ -23,6 +24,8 @@ impl Compiler<'_> {
                 format!("{name} is not an instruction of this processor: it runs as on those that have it"),
             );
         }
+        fits(instruction)?;
+        self.lacks(instruction);
         if let Some(why) = coverage::undocumented(name) {
             return Err(why.to_owned());
         }

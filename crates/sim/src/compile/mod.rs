@@ -3,6 +3,7 @@
 mod data;
 mod device;
 mod instruction;
+mod lacks;
 mod operand;
 mod tables;
 
@@ -209,6 +210,7 @@ impl Compiler<'_> {
             }
             let start = self.ops.len() as u32;
             self.structural(Op::Rung);
+            self.shape(rung);
             let mut next = 0;
             self.series(&rung.series, start, 0, &mut next);
         }

@@ -6,9 +6,9 @@ use instr::parameters;
 use ladder::{Address, DataFile, Expression, Family, FileType, Image, Instruction, Operand};
 
 use super::Compiler;
-use crate::Options;
 use crate::program::Approximation;
 use crate::status;
+use crate::{Options, outside};
 
 pub(super) struct Tables {
     pub(super) files: Vec<DataFile>,
@@ -66,6 +66,7 @@ pub(super) fn tables(image: &Image, options: &Options, family: Family) -> Tables
         }
     }
     files.sort_by_key(|file| file.number);
+    functions.iter_mut().for_each(widen);
     files.append(&mut functions);
     Tables { files, wanted: needs.io.into_iter().collect(), approximations }
 }
@@ -93,6 +94,20 @@ fn function_file(file_type: FileType) -> DataFile {
         }
     }
     file
+}
+
+/// Pulse outputs get a word for the bits whose place in their element is not known.
+fn widen(file: &mut DataFile) {
+    let (old, new) = (usize::from(file.words_per_element), outside::PULSE_WORD + 1);
+    if !outside::PULSES.contains(&file.file_type) || old == 0 || old >= usize::from(new) {
+        return;
+    }
+    let mut words = Vec::with_capacity(usize::from(file.elements) * usize::from(new));
+    for element in file.words.chunks(old) {
+        words.extend_from_slice(element);
+        words.resize(words.len() + usize::from(new) - element.len(), 0);
+    }
+    (file.words, file.words_per_element) = (words, new);
 }
 
 /// What the direct addresses of a program reach.
