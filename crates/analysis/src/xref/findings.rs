@@ -226,9 +226,7 @@ impl CrossReference<'_> {
             let (locations, left_out) = bounded(locations, budget);
             let address = Address { indexed: false, ..address.clone() };
             let key = group_key(&address, self.place(&address));
-            // Verifying makes elements of data files, and no modules.
-            let creatable = !verified && kind != FindingKind::NoSuchPoint;
-            let expected = creatable.then_some(Reason::NotVerified);
+            let expected = (!verified).then_some(Reason::NotVerified);
             (kind, key, Finding { kind, address, expected, locations, left_out, value: None })
         };
         places.into_iter().map(finding).collect()

@@ -237,11 +237,14 @@ impl Report<'_> {
     fn print_findings(&self, out: &mut dyn Write) -> Result<(), Error> {
         let findings = self.xref.findings();
         let mut table = Columns::new(&["Finding", "Address", "Symbol", "Rungs"]);
-        // What is normal for its kind of address (an input nobody writes) is in the JSON only.
-        for finding in findings.list.iter().filter(|finding| finding.expected.is_none()) {
+        // What is normal for its kind of address (an input nobody writes) is in the JSON only. Verifying
+        // a rung makes elements of data files, and no modules.
+        let worth = |f: &&analysis::Finding| f.expected.is_none() || f.kind == analysis::FindingKind::NoSuchPoint;
+        for finding in findings.list.iter().filter(worth) {
             let (symbol, _) = self.documentation(&finding.address);
+            let reason = finding.expected.map(|reason| format!(" ({})", reason.as_str())).unwrap_or_default();
             table.row([
-                finding.kind.as_str().to_owned(),
+                format!("{}{reason}", finding.kind.as_str()),
                 finding.address.to_string(),
                 symbol.unwrap_or_default(),
                 places(&finding.locations, finding.left_out),
