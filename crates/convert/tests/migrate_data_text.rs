@@ -139,3 +139,22 @@ fn floats() {
         r#"STR ST1; DUPBOOL; ANDE R1 0.0; SET C256; NOT; RST C256; NOT; POPBOOL; DUPBOOL; AND C256; SET N71:0; MATH R2 "IF(R0 < 0.0, -10.0, 10.0) * 100000000000000000000000000000000000000.0"; POPBOOL; ANDN C256; MATH R2 "R0 / R1""#,
     );
 }
+
+#[test]
+fn only_confirmed_forms_leave_operators_alone() {
+    // Without HALT an overflow stops nothing, which is stated.
+    let options = Options { only_confirmed: true };
+    for (rung, verdict) in [
+        ("AND N7:0 255 N7:0", Verdict::Person),
+        ("MVM N7:0 00FFh N7:1", Verdict::Person),
+        ("ADD N7:0 1 N7:0", Verdict::Condition),
+        ("DIV N7:0 N7:1 N7:2", Verdict::Condition),
+        ("SCP N7:0 0 16383 0 55 N7:1", Verdict::Exact),
+        ("MOV F8:0 N7:0", Verdict::Condition),
+        ("COP #N7:0 #N7:2 7", Verdict::Exact),
+    ] {
+        let image = image(Family::Slc503, &[(2, rung)]);
+        let migration = migrate(&image, &[], &options).expect("it migrates");
+        assert_eq!(migration.rungs.first().map(|result| result.verdict), Some(verdict), "{rung}");
+    }
+}

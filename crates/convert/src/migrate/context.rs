@@ -191,6 +191,10 @@ impl<'a> Context<'a> {
     /// the end of the scan then stops the program as the original stops.
     pub fn minor_error_bit(&mut self, bit: u16) -> String {
         self.needs.minor_errors = true;
+        if self.options.only_confirmed {
+            let text = "a minor error stops the original at the end of the scan: here its outputs go off, the program goes on";
+            self.condition(Mark::Fault, text);
+        }
         self.status_bit(5, bit)
     }
 }

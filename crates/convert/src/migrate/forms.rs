@@ -43,6 +43,19 @@ pub fn unconfirmed(project: &Project) -> Vec<Form> {
     found.into_iter().map(|((form, evidence), uses)| Form { form, evidence, uses }).collect()
 }
 
+/// An operator or function in the expressions of a rung that exports do not show.
+pub(super) fn in_expressions(code: &[domore::Instruction]) -> Option<String> {
+    let mut found = None;
+    for instruction in code.iter().filter(|instruction| instruction.is("MATH")) {
+        if let Ok(Operand::Quoted(text)) = Operand::parse(instruction.operand(1)) {
+            of_expression(&text, &mut |form, _| {
+                found.get_or_insert_with(|| form.to_owned());
+            });
+        }
+    }
+    found
+}
+
 fn of_address(address: &Address, count: &mut impl FnMut(&str, &'static str)) {
     match address.cast {
         None => {}

@@ -296,7 +296,13 @@ fn convert(
         e.contact(&Contact::On(bit));
     }
     rung::series(context, &mut e, &rung.series)?;
-    Ok(e.finish())
+    let code = e.finish();
+    if context.options.only_confirmed
+        && let Some(form) = forms::in_expressions(&code)
+    {
+        return Err(Person::new(Mark::NoCounterpart, format!("{form}: its text form is not confirmed by Designer")));
+    }
+    Ok(code)
 }
 
 /// Adds what stands around the program, and the ends of subroutines.
@@ -335,9 +341,12 @@ fn notes(image: &Image, context: &Context<'_>) -> Vec<Note> {
         notes.push(Note::new(Mark::AsyncIo, "the project holds forces: they are not carried over"));
     }
     if context.needs.minor_errors {
-        let text = "overflow (S:5/0) and control register errors (S:5/2) stop the original at the end of the scan: \
-                    the last rung does the same with HALT; restart by PROGRAM and RUN";
-        notes.push(Note::new(Mark::Fault, text));
+        let here = match context.options.only_confirmed {
+            true => "the last rung sets slcFault and keeps the outputs off; the program goes on",
+            false => "the last rung does the same with HALT; restart by PROGRAM and RUN",
+        };
+        let text = "overflow (S:5/0) and control register errors (S:5/2) stop the original at the end of the scan";
+        notes.push(Note::new(Mark::Fault, format!("{text}: {here}")));
     }
     if context.reads_rtc || context.status_words.iter().any(|word| *word > 35) {
         let text = "the program reads the clock: set the Do-more clock to the time of the original's";
