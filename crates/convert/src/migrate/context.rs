@@ -192,7 +192,8 @@ impl<'a> Context<'a> {
     pub fn minor_error_bit(&mut self, bit: u16) -> String {
         self.needs.minor_errors = true;
         if self.options.only_confirmed {
-            let text = "a minor error stops the original at the end of the scan: here its outputs go off, the program goes on";
+            let text =
+                "a minor error stops the original at the end of the scan: here its outputs go off, the program goes on";
             self.condition(Mark::Fault, text);
         }
         self.status_bit(5, bit)
