@@ -43,13 +43,15 @@ pub fn unconfirmed(project: &Project) -> Vec<Form> {
     found.into_iter().map(|((form, evidence), uses)| Form { form, evidence, uses }).collect()
 }
 
-/// An operator or function in the expressions of a rung that exports do not show.
+/// An operator or function in the expressions of a rung that is inferred.
 pub(super) fn in_expressions(code: &[domore::Instruction]) -> Option<String> {
     let mut found = None;
     for instruction in code.iter().filter(|instruction| instruction.is("MATH")) {
         if let Ok(Operand::Quoted(text)) = Operand::parse(instruction.operand(1)) {
-            of_expression(&text, &mut |form, _| {
-                found.get_or_insert_with(|| form.to_owned());
+            of_expression(&text, &mut |form, evidence| {
+                if evidence == Evidence::Inferred.as_str() {
+                    found.get_or_insert_with(|| form.to_owned());
+                }
             });
         }
     }
