@@ -1,14 +1,14 @@
 //! Whether a proof run sees a converted program that does not do the same: every kind of single mistake, in
 //! the program a migration makes of each proven example.
 
+mod migrated;
 #[path = "mutants/mutate.rs"]
 mod mutate;
-mod support;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use analysis::proof::{Options, Verdict, prove_domore};
-use support::Migrated;
+use migrated::Migrated;
 
 /// How many mutants of each program, and scans a mutant has to be found in.
 fn effort() -> (usize, u64) {
@@ -25,7 +25,7 @@ fn mutants_are_reported_as_different() {
     // program, missed.
     let mut table: BTreeMap<mutate::Kind, [usize; 5]> = BTreeMap::new();
     let mut lines = Vec::new();
-    for program in support::proven() {
+    for program in migrated::proven() {
         let base = prove(&program, &program.project, scans);
         assert_ne!(base.verdict(), Verdict::Different, "{}: {base}", program.name);
         let open: BTreeSet<_> = base.other_missing.iter().copied().collect();

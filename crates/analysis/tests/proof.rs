@@ -1,6 +1,6 @@
 //! Proof runs: what they find, what they refuse to call equal, and whether what they write can be run again.
 
-mod support;
+mod migrated;
 
 use analysis::proof::{Difference, Kind, Mapping, Named, Options, Report, RungFate, Verdict, prove_domore, prove_slc};
 use ladder::Image;
@@ -8,7 +8,7 @@ use sim::scenario::{Loader, Scenario, Subject};
 
 /// An SLC text with the data files these rungs need.
 fn program(rungs: &[&str]) -> Image {
-    let motor = std::fs::read(support::root().join("examples/motor/motor.SLC")).expect("the example is there");
+    let motor = std::fs::read(migrated::root().join("examples/motor/motor.SLC")).expect("the example is there");
     let mut image = convert::open(&motor, "motor.SLC", rss::Mode::Permissive).expect("reads").main;
     let family = Some(image.processor.family);
     let file = image.program_files.iter_mut().find(|file| file.number == 2).expect("a main program");
@@ -213,7 +213,7 @@ fn names_and_values_are_those_of_the_sides() {
 #[test]
 fn proven_programs_stay_proven() {
     let scans = if cfg!(debug_assertions) { 5_000 } else { 100_000 };
-    for program in support::proven() {
+    for program in migrated::proven() {
         let options = Options { scans, ..Options::default() };
         let report = prove_domore(&program.image, &program.project, &program.map, Some(&program.fates), &options);
         println!("{}: {} conditions {}", program.name, report.verdict().as_str(), report.conditions_covered());

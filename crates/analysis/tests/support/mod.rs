@@ -1,81 +1,87 @@
-//! Programs that are migrated and proven.
+//! Images from a few lines of rung text, for tests.
+// Each test binary uses its part of a module that is not a crate.
+#![allow(dead_code, unreachable_pub)]
 
-use std::path::{Path, PathBuf};
+use ladder::{
+    Confidence, DataFile, Element, Family, FileType, Image, Instruction, IoRange, Mnemonic, Module, Operand,
+    ProgramFile, ProgramFileKind, Rung, Slot,
+};
 
-use analysis::proof::{Mapping, RungFate};
-use convert::migrate::{Migration, Options, Verdict, migrate};
-use ladder::Image;
-
-/// A program and what a migration made of it.
-pub(crate) struct Migrated {
-    pub(crate) name: String,
-    pub(crate) image: Image,
-    pub(crate) project: domore::Project,
-    pub(crate) map: Vec<Mapping>,
-    pub(crate) fates: Vec<RungFate>,
+/// Data files large enough for the tests: the ones every project has, and some more types.
+pub fn data_files() -> Vec<DataFile> {
+    [
+        (FileType::O, 0, 3),
+        (FileType::I, 1, 3),
+        (FileType::S, 2, 66),
+        (FileType::B, 3, 32),
+        (FileType::T, 4, 10),
+        (FileType::C, 5, 10),
+        (FileType::R, 6, 10),
+        (FileType::N, 7, 105),
+        (FileType::F, 8, 20),
+        (FileType::L, 9, 20),
+        (FileType::N, 10, 50),
+        (FileType::ST, 11, 5),
+        (FileType::PD, 12, 2),
+        (FileType::MG, 13, 2),
+        (FileType::RIX, 14, 1),
+    ]
+    .into_iter()
+    .map(|(file_type, number, elements)| DataFile::new(file_type, number, elements))
+    .collect()
 }
 
-impl Migrated {
-    pub(crate) fn of(path: &Path) -> Migrated {
-        let bytes = std::fs::read(path).expect("the file is there");
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let project = convert::open(&bytes, &name, rss::Mode::Permissive).expect("reads");
-        let image = project.main;
-        let migration = migrate(&image, &[], &Options::default()).expect("no map to be wrong");
-        let (map, fates) = (mappings(&migration), fates(&migration));
-        Migrated { name, image, project: migration.project, map, fates }
-    }
+/// Slots 0 (words 0 and 1) and 2 (word 2) in both directions.
+fn slots() -> Vec<Slot> {
+    [(0, 0, 2), (2, 2, 1)]
+        .into_iter()
+        .map(|(number, first_word, words)| Slot {
+            number,
+            module: Module {
+                catalog: None,
+                description: String::new(),
+                identity: String::new(),
+                confidence: Confidence::Unknown,
+            },
+            inputs: IoRange { first_word, words, bits: words * 16 },
+            outputs: IoRange { first_word, words, bits: words * 16 },
+            configuration: Vec::new(),
+        })
+        .collect()
 }
 
-fn mappings(migration: &Migration) -> Vec<Mapping> {
-    let rows = migration.map.iter().filter(|row| !row.slc.starts_with("helper"));
-    rows.map(|row| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() }).collect()
-}
-
-fn fates(migration: &Migration) -> Vec<RungFate> {
-    let of = |verdict| move |rung: &&convert::migrate::RungResult| rung.verdict == verdict;
-    let notes = |rung: &convert::migrate::RungResult| rung.notes.iter().map(ToString::to_string).collect::<Vec<_>>();
-    let fate = |rung: &convert::migrate::RungResult| RungFate {
-        file: rung.file,
-        rung: rung.rung,
-        person: Some(rung).filter(of(Verdict::Person)).map(|rung| notes(rung).join("; ")),
-        conditions: Some(rung).filter(of(Verdict::Condition)).map(notes).unwrap_or_default(),
+/// Instructions of a rung in series, separated by `;`; operands by blanks, `_` for a blank operand.
+pub fn rung(text: &str) -> Rung {
+    let instruction = |text: &str| {
+        let mut words = text.split_whitespace();
+        let mnemonic = Mnemonic::named(words.next().unwrap_or_default().to_owned());
+        let operands = words.map(|word| Operand::parse(if word == "_" { "" } else { word })).collect();
+        let mut instruction = Instruction::new(mnemonic, operands);
+        instruction.compiled = true;
+        Element::Instruction(instruction)
     };
-    migration.rungs.iter().map(fate).collect()
+    Rung::new(text.split(';').map(instruction).collect())
 }
 
-/// The workspace.
-pub(crate) fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+/// An image with one rung per line in file 2.
+pub fn image(rungs: &[&str]) -> Image {
+    let mut image = Image { data_files: data_files(), ..Image::default() };
+    image.io.slots = slots();
+    image.processor.family = Family::Slc503;
+    image.program_files.push(ProgramFile {
+        number: 2,
+        name: "MAIN".into(),
+        description: String::new(),
+        kind: ProgramFileKind::Ladder,
+        rungs: rungs.iter().map(|text| rung(text)).collect(),
+    });
+    image
 }
 
-/// Our own examples, and the programs of the corpus that must be proven, as far as they are here.
-pub(crate) fn proven() -> Vec<Migrated> {
-    let own = ["motor/motor.SLC", "batch/batch.SLC", "traffic_light/traffic_light.SLC"];
-    let mut paths: Vec<PathBuf> = own.iter().map(|path| root().join("examples").join(path)).collect();
-    let corpus = std::env::var_os("RUNGS_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
-    if corpus.is_dir() {
-        paths.extend(CORPUS.iter().map(|path| corpus.join(path)));
-    } else {
-        println!("skipped: corpus not present");
+/// Sets a word of a data file.
+pub fn set(image: &mut Image, file_type: FileType, number: u16, word: usize, value: u16) {
+    let files = image.data_files.iter_mut().chain(&mut image.function_files);
+    for file in files.filter(|f| f.file_type == file_type && f.number == number) {
+        file.words[word] = value;
     }
-    let wanted = std::env::var("RUNGS_PROGRAM").unwrap_or_default();
-    paths.retain(|path| path.to_string_lossy().contains(&wanted));
-    paths.iter().map(|path| Migrated::of(path)).collect()
 }
-
-const CORPUS: [&str; 13] = [
-    "PLC_traffic_light_rtc/TRAFFIC_LIGHT_6TON_orig.RSS",
-    "PLC_traffic_light_rtc/traffic_light_6TON.RSS",
-    "PLC_traffic_light_rtc/traffic_light_rtc.RSS",
-    "PLC/TRAFFIC_LIGHT.RSS",
-    "PLC/TRAFFIC_LIGHT_STOP.RSS",
-    "PLC/TRAFFIC_LIGHT_SEQUENCER.RSS",
-    "PLC_2s_lamp_flash/single_timer.RSS",
-    "PLC_2s_lamp_flash/cascading_timers.RSS",
-    "PLC_2s_lamp_flash/free_running_clock_bit_14.RSS",
-    "PLC_2s_lamp_flash/rtc_bit_1.RSS",
-    "PLC_3_pump_sequencing/3_pump_sequencing.RSS",
-    "PLC_reject_timing/lecky_demo.RSS",
-    "PLC_reject_timing/lecky_demo_tof.RSS",
-];
