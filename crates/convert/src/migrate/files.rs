@@ -202,7 +202,7 @@ fn move_run(cx: &mut Context<'_>, e: &mut Emitter, from: &Run, into: &Run) -> Co
             Ok(())
         }
         (Run::Chosen { .. }, _) | (_, Run::Chosen { .. }) => by_index(cx, e, from, into),
-        _ => by_words(cx, e, from, into),
+        _ => by_words(e, from, into),
     }
 }
 
@@ -276,8 +276,8 @@ fn by_index(cx: &mut Context<'_>, e: &mut Emitter, from: &Run, into: &Run) -> Co
 }
 
 /// Words of unlike blocks, one by one from the lowest on. The two runs never overlap.
-fn by_words(cx: &mut Context<'_>, e: &mut Emitter, from: &Run, into: &Run) -> Converted {
-    let words = words_of(cx, e, from)?;
+fn by_words(e: &mut Emitter, from: &Run, into: &Run) -> Converted {
+    let words = words_of(from)?;
     if words.len() > MOST as usize {
         return Err(Person::new(Mark::Files, format!("{} words between unlike blocks", words.len())));
     }
@@ -313,7 +313,7 @@ fn by_words(cx: &mut Context<'_>, e: &mut Emitter, from: &Run, into: &Run) -> Co
 }
 
 /// The words of a run as values.
-fn words_of(cx: &mut Context<'_>, e: &mut Emitter, run: &Run) -> Converted<Vec<Value>> {
+fn words_of(run: &Run) -> Converted<Vec<Value>> {
     Ok(match run {
         Run::Words(texts) => texts.iter().map(|text| Value::element(text, Width::Word)).collect(),
         Run::Solid { block: Block::D, first, count } => {
@@ -330,7 +330,6 @@ fn words_of(cx: &mut Context<'_>, e: &mut Emitter, run: &Run) -> Converted<Vec<V
             words
         }
         Run::Solid { block: block @ (Block::R | Block::Sl), .. } => {
-            let _ = (cx, e);
             return Err(Person::new(
                 Mark::Files,
                 format!("words of {} as they are: their order is not documented", block.name()),

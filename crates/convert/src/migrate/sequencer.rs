@@ -181,7 +181,7 @@ fn output(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     let control = Control::of(cx, i, 3)?;
     let (file, mask, to) = (operand(i, 0)?, operand(i, 1)?, operand(i, 2)?);
     let start = cx.start(file)?;
-    reaches(cx, &start, &control, file)?;
+    reaches(&start, &control, file)?;
     let position = control.position.clone();
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
@@ -214,7 +214,7 @@ fn compare(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted 
     let control = Control::of(cx, i, 3)?;
     let (file, mask, source) = (operand(i, 0)?, operand(i, 1)?, operand(i, 2)?);
     let start = cx.start(file)?;
-    reaches(cx, &start, &control, file)?;
+    reaches(&start, &control, file)?;
     let (position, found) = (control.position.clone(), control.bit(cx, FD)?);
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
@@ -237,7 +237,7 @@ fn load(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     let control = Control::of(cx, i, 2)?;
     let (file, source) = (operand(i, 0)?, operand(i, 1)?);
     let start = cx.start(file)?;
-    reaches(cx, &start, &control, file)?;
+    reaches(&start, &control, file)?;
     cx.needs_unconfirmed("a destination decided at run time")?;
     let position = control.position.clone();
     step(cx, e, &control, |cx, e| {
@@ -252,8 +252,7 @@ fn load(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
 }
 
 /// The file has a word for every step.
-fn reaches(cx: &Context<'_>, start: &Start, control: &Control, file: &Operand) -> Converted {
-    let _ = cx;
+fn reaches(start: &Start, control: &Control, file: &Operand) -> Converted {
     let words = u32::try_from(control.length).unwrap_or(u32::MAX).saturating_add(1);
     if start.fixed.is_none() || start.words < words {
         return Err(Person::new(Mark::Files, format!("{file}: {words} words from a fixed place are needed")));
@@ -298,7 +297,7 @@ fn shift(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction, left: bool) -> 
         if left {
             shift_left(e, &words, length, &entering);
         } else {
-            shift_right(cx, e, &words, length, &entering);
+            shift_right(e, &words, length, &entering);
         }
         e.when(|e| {
             e.and_compare(Relation::NotEqual, &leaving, "0");
@@ -342,8 +341,7 @@ fn shift_left(e: &mut Emitter, words: &[String], length: u32, entering: &str) {
 }
 
 /// From the lowest word up, so that each takes the old bottom bit of the one above.
-fn shift_right(cx: &mut Context<'_>, e: &mut Emitter, words: &[String], length: u32, entering: &str) {
-    let _ = cx;
+fn shift_right(e: &mut Emitter, words: &[String], length: u32, entering: &str) {
     for (index, word) in words.iter().enumerate() {
         let bits = used(length, index);
         let above = match words.get(index + 1) {
