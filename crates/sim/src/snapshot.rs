@@ -1,18 +1,19 @@
 //! Saved states: a stable byte form of [`State`].
 //!
-//! `RUNGSIM1`, the identity of the program, then every field in a fixed order, numbers little-endian.
+//! `RUNGSIM2`, the identity of the program, then every field in a fixed order, numbers little-endian.
 
 use std::fmt;
 
 use instr::exec::process::Loop;
 
+use crate::core::discrete::DiscreteInput;
 use crate::core::fast::FastCounter;
 use crate::fault::MajorFault;
 use crate::machine::Mode;
 use crate::op::Compiled;
 use crate::state::{MessageSlot, PidSlot, State, TimedInterrupt, TimerSlot};
 
-const MAGIC: &[u8; 8] = b"RUNGSIM1";
+const MAGIC: &[u8; 8] = b"RUNGSIM2";
 
 /// Why bytes are no state of this machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +89,8 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
     out.push(state.due.into());
     out.extend_from_slice(&state.events);
     out.extend_from_slice(&state.event_inputs.to_le_bytes());
+    out.push(state.discrete.matched.into());
+    out.extend_from_slice(&state.discrete.last.to_le_bytes());
     for counter in state.fast {
         out.extend_from_slice(&[counter.loaded.into(), counter.set.into()]);
         for value in [counter.high, counter.low, counter.overflow, counter.underflow] {
@@ -158,6 +161,7 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
     state.due = reader.flag()?;
     state.events = reader.take::<8>()?;
     state.event_inputs = reader.word()?;
+    state.discrete = DiscreteInput { matched: reader.flag()?, last: reader.word()? };
     for counter in &mut state.fast {
         *counter = FastCounter {
             loaded: reader.flag()?,

@@ -1,5 +1,6 @@
 //! Everything that changes while a program runs.
 
+use crate::core::discrete::DiscreteInput;
 use crate::core::fast::FastCounter;
 use crate::fault::MajorFault;
 use crate::machine::Mode;
@@ -80,6 +81,8 @@ pub(crate) struct State {
     pub(crate) events: [u8; 8],
     /// First word of input terminals as the event interrupts saw it last.
     pub(crate) event_inputs: u16,
+    /// The discrete input interrupt.
+    pub(crate) discrete: DiscreteInput,
     /// High-speed counters.
     pub(crate) fast: [FastCounter; 6],
     /// Indirect addresses that left their file, so far.
@@ -115,6 +118,7 @@ impl State {
             due: false,
             events: [0; 8],
             event_inputs: 0,
+            discrete: DiscreteInput::default(),
             fast: [FastCounter::default(); 6],
             strays: 0,
             scratch: Vec::with_capacity(if program.needs_scratch() { 3 * program.data.len() } else { 0 }),
@@ -147,6 +151,7 @@ impl State {
             due,
             events,
             event_inputs,
+            discrete,
             fast,
             strays,
             scratch: _,
@@ -173,6 +178,7 @@ impl State {
         self.due = *due;
         self.events = *events;
         self.event_inputs = *event_inputs;
+        self.discrete = *discrete;
         self.fast = *fast;
         self.strays = *strays;
     }

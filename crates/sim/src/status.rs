@@ -37,6 +37,12 @@ pub const STI_EXECUTING: Bit = (CONTROL, 4);
 pub const INDEX_ACROSS: Bit = (CONTROL, 8);
 /// STI set point counts milliseconds.
 pub const STI_MILLISECONDS: Bit = (CONTROL, 1 << 10);
+/// DII pending.
+pub const DII_PENDING: Bit = (CONTROL, 1 << 11);
+/// DII enabled.
+pub const DII_ENABLED: Bit = (CONTROL, 1 << 12);
+/// DII executing.
+pub const DII_EXECUTING: Bit = (CONTROL, 1 << 13);
 /// Math overflow keeps the low bits.
 pub const OVERFLOW_WRAPS: Bit = (CONTROL, 1 << 14);
 /// Scan time, low byte, and watchdog, high byte.
@@ -53,6 +59,8 @@ pub const CONTROL_ERROR: u16 = 1 << 2;
 pub const FAULT_IN_ROUTINE: u16 = 1 << 3;
 /// STI expired while it was executing.
 pub const STI_OVERFLOW: u16 = 1 << 10;
+/// A discrete input interrupt came while one was waiting.
+pub const DII_OVERFLOW: u16 = 1 << 12;
 /// ASCII string error.
 pub const STRING_ERROR: u16 = 1 << 15;
 /// Minor error bits that become major error 0020 at the end of the scan.
@@ -91,10 +99,26 @@ pub const SCAN_IN_MILLISECONDS: Bit = (MISCELLANEOUS, 1 << 13);
 pub const LAST_SCAN: usize = 35;
 /// Further minor errors of the SLC 5/03 and higher.
 pub const EXTENDED_MINOR: usize = 36;
+/// DII lost.
+pub const DII_LOST: u16 = 1 << 8;
 /// STI lost.
 pub const STI_LOST: u16 = 1 << 9;
 /// Year; month, day, hour, minute, second follow.
 pub const YEAR: usize = 37;
+/// DII program file.
+pub const DII_FILE: usize = 46;
+/// DII slot.
+pub const DII_SLOT: usize = 47;
+/// DII mask: bits of the first input word that are looked at.
+pub const DII_MASK: usize = 48;
+/// DII compare value.
+pub const DII_COMPARE: usize = 49;
+/// DII preset: events per interrupt.
+pub const DII_PRESET: usize = 50;
+/// DII return mask: bits that changed with the event.
+pub const DII_RETURN: usize = 51;
+/// DII accumulator.
+pub const DII_ACCUMULATOR: usize = 52;
 /// Day of the week.
 pub const DAY_OF_WEEK: usize = 53;
 /// Words the engine relies on: a shorter status file is extended in memory, never in what is shown.

@@ -180,6 +180,11 @@ impl Compiler<'_> {
             let why = format!("{file_type}:{slot}.{word} is not in the I/O configuration: it is a word of its own");
             self.approximations.push(Approximation { site: None, why });
         }
+        for file in self.layout.files.iter().filter(|file| file.file_type == FileType::PLS && file.elements > 0) {
+            let why =
+                format!("PLS{}: programmable limit switches switch no outputs: the table is data only", file.number);
+            self.approximations.push(Approximation { site: None, why });
+        }
         if self.image.processor.family == ladder::Family::Unknown && self.options.family.is_none() {
             let why = "the processor family is not known: the program runs as on SLC 5/03".to_owned();
             self.approximations.push(Approximation { site: None, why });

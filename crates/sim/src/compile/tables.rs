@@ -6,6 +6,7 @@ use instr::parameters;
 use ladder::{Address, DataFile, Expression, Family, FileType, Image, Instruction, Operand};
 
 use super::Compiler;
+use crate::family::Lineage;
 use crate::program::Approximation;
 use crate::status;
 use crate::{Options, outside};
@@ -207,8 +208,11 @@ impl Compiler<'_> {
         if self.traits.status_file_sti()
             && let Some(word) = data.get_mut(self.layout.status + status::STI_ENABLED.0)
         {
-            // A new project has the timed interrupt enabled.
+            // A new project has the timed interrupt enabled, and that of discrete inputs.
             *word |= status::STI_ENABLED.1;
+            if self.traits.lineage == Lineage::S3 {
+                *word |= status::DII_ENABLED.1;
+            }
         }
         let mut done: BTreeSet<u32> = BTreeSet::new();
         let image = self.image;

@@ -51,7 +51,10 @@ impl Core<'_> {
             self.s.timed.enabled = self.status_bit(status::STI_ENABLED);
             match self.status_file_period() {
                 Ok(period) => self.start_timed(period),
-                Err(code) => self.halt(code, Self::nowhere()),
+                Err(code) => return self.halt(code, Self::nowhere()),
+            }
+            if self.p.traits.lineage == crate::family::Lineage::S3 {
+                self.enter_run_discrete();
             }
             return;
         }
@@ -85,6 +88,9 @@ impl Core<'_> {
         self.s.timed.period = 0;
         if self.p.traits.status_file_sti() {
             self.set_status_bit(status::STI_PENDING, false);
+        }
+        if self.p.traits.lineage == crate::family::Lineage::S3 {
+            self.set_status_bit(status::DII_PENDING, false);
         }
     }
 
@@ -178,7 +184,7 @@ impl Core<'_> {
         self.ended(ending);
     }
 
-    fn ended(&mut self, ending: Ending) {
+    pub(super) fn ended(&mut self, ending: Ending) {
         match ending {
             Ending::End | Ending::TempEnd => {}
             Ending::Suspend => self.stop(Mode::Suspend),

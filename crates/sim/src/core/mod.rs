@@ -2,6 +2,7 @@
 
 mod block;
 mod device;
+pub(crate) mod discrete;
 pub(crate) mod fast;
 mod files;
 mod interrupt;

@@ -3,6 +3,7 @@
 use super::run::{Context, Ending};
 use super::{Core, Watch};
 use crate::choices::Choice;
+use crate::family::Lineage;
 use crate::fault::{MajorFault, code};
 use crate::machine::Mode;
 use crate::op::{BitAt, NO_INSTRUCTION, OpSite};
@@ -107,10 +108,14 @@ impl Core<'_> {
         self.refill();
         self.scan_times(elapsed);
         self.read_inputs();
-        if self.p.traits.mx() {
-            self.fast_inputs(watch);
+        match self.p.traits.lineage {
+            Lineage::Mx => self.fast_inputs(watch),
+            Lineage::S3 => self.discrete_input(watch),
+            _ => {}
         }
-        self.events(watch);
+        if self.executing() {
+            self.events(watch);
+        }
         if !self.executing() {
             return;
         }
@@ -197,7 +202,6 @@ impl Core<'_> {
 
     /// Seconds pass on the calendar: S:37 to S:42 with S:53, and RTC:0.
     fn move_clocks(&mut self, seconds: u64) {
-        use crate::family::Lineage;
         let lineage = self.p.traits.lineage;
         if matches!(lineage, Lineage::S3 | Lineage::Mx) {
             let first = (self.p.layout.status + status::YEAR) as u32;
