@@ -107,9 +107,14 @@ impl Controller for Machine {
         self.set(&place(self, address)?, value).map_err(|why| why.to_string())
     }
 
-    /// Timers enter run the way the change of mode leaves them.
+    /// Timers enter run the way the change of mode leaves them, and so does what counters remember of
+    /// their rungs: CU and CD.
     fn follows_mode(&self, address: &str) -> bool {
-        outside::address(address).is_ok_and(|address| address.file_type == FileType::T)
+        outside::address(address).is_ok_and(|address| match address.file_type {
+            FileType::T => true,
+            FileType::C => address.bit.is_some() && matches!(address.member(), Some("CU" | "CD")),
+            _ => false,
+        })
     }
 }
 
