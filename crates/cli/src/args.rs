@@ -62,6 +62,11 @@ pub enum Command {
                             rungs run conveyor.RSS --for 100ms --trace-rung 2:4\n\n\
                             The first scan after entering run has no time before it; every later one comes --scan after the last.")]
     Run(RunArguments),
+    /// Measures how fast a program runs here: instructions per scan, scans per second, time per instruction
+    #[command(after_help = "Example: rungs bench conveyor.RSS\n         rungs bench conveyor.RSS --scans 100000 --json\n\n\
+                            Inputs are at rest. Only the simulator is measured: a scan here has nothing to do with the scan time \
+                            of the controller. Exit code 1: the program stopped by a fault, or is refused.")]
+    Bench(BenchArguments),
     /// Runs scenarios (TOML) and reports every expectation that is not met
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\
                             Exit code 0: all met; 1: an expectation not met or a program refused; 3: a scenario or program that cannot be read.")]
@@ -296,6 +301,30 @@ pub struct RunArguments {
     /// Overwrite the output if it exists
     #[arg(long)]
     pub force: bool,
+    /// Load a program that holds instructions which cannot be simulated; executing one is major fault 0031
+    #[arg(long)]
+    pub accept_unsupported: bool,
+    #[command(flatten)]
+    pub simulation: Simulation,
+    /// Which copy of the program
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+}
+
+#[derive(Args)]
+pub struct BenchArguments {
+    /// A project, SLC text, JSON project or Do-more text
+    #[arg(value_name = "FILE")]
+    pub program: PathBuf,
+    /// Scans to run. Default: as many as take a second
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    pub scans: Option<u64>,
+    /// Simulated time from one scan to the next
+    #[arg(long, value_name = "TIME", default_value = "10ms", value_parser = sim::scenario::parse_duration)]
+    pub scan: Duration,
+    /// JSON
+    #[arg(long)]
+    pub json: bool,
     /// Load a program that holds instructions which cannot be simulated; executing one is major fault 0031
     #[arg(long)]
     pub accept_unsupported: bool,

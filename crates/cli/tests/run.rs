@@ -61,6 +61,22 @@ fn branches_of_a_traced_rung_are_marked() {
     assert!(table.contains(" NXB ━[XIC B3:0/0]") && table.contains(" BND ━[XIC I:0.0/1]"), "{table}");
 }
 
+/// What is counted is the same on every machine; what is measured is only there.
+#[test]
+fn a_measurement_counts_scans_and_instructions() {
+    let output = rungs(&["bench", "examples/motor/motor.RSS", "--scans", "1000", "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: serde_json::Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+    assert_eq!((&found["scans"], &found["simulated_s"]), (&1000.into(), &9.99.into()));
+    let per_scan = found["instructions_per_scan"].as_f64().expect("a number");
+    assert_eq!(found["instructions"].as_f64(), Some(1000.0 * per_scan));
+    assert!(found["ns_per_instruction"].is_number() && found["scans_per_second"].is_number(), "{found}");
+    assert!(found["stopped"].is_null());
+    let output = rungs(&["bench", "examples/filling_domore/filling.txt", "--scans", "10"]);
+    assert!(text(&output.stdout).contains("scans                10 in"), "{}", text(&output.stdout));
+    assert_eq!(rungs(&["bench", "no such file"]).status.code(), Some(3));
+}
+
 #[test]
 fn json_lines_end_with_a_summary() {
     let lines = motor(&["--watch", "T4:0", "--format", "json", "--trace-rung", "1"]);

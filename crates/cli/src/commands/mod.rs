@@ -1,5 +1,6 @@
 //! The commands: each opens projects, asks one library, prints.
 
+mod bench;
 mod build;
 mod data;
 mod domore;
@@ -40,6 +41,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Export(arguments) => export::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
         Command::Migrate(arguments) => migrate::run(&arguments),
         Command::Prove(arguments) => prove::run(&arguments),

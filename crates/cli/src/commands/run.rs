@@ -88,7 +88,7 @@ fn follow<M: Followed>(
 }
 
 /// The text of a Do-more program; `None` for anything else, errors included: opening words them.
-fn do_more_text(path: &Path) -> Option<String> {
+pub(super) fn do_more_text(path: &Path) -> Option<String> {
     let bytes = super::read_file(path, domore::text::MAX_TEXT).ok()?;
     let text = convert::slc::decode(&bytes).into_owned();
     domore::text::is_domore(&text).then_some(text)
