@@ -1,7 +1,10 @@
 //! Damaged and hostile input: always an error with a place or a partial read with deviations, never a panic,
 //! within a second and within bounds. All inputs are made by the crate's own writer.
 
+use rss::channel::ChannelConfiguration;
 use rss::data::{DataFile, DataFiles, DataHolder, ExtensionalDataFiles, FileTypeCode};
+use rss::io::{IoConfiguration, IoLayout, PackedIo};
+use rss::processor::Model;
 use rss::program::{Branch, Instruction, Item, LadFile, Leg, ProgramFiles, Rung, mark};
 use rss::verify::verify;
 use rss::{Container, Error, Foreign, ImageKind, Mode, Project, StreamKind, Text, envelope, parse, serialize, small};
@@ -64,6 +67,16 @@ fn data() -> DataHolder<'static> {
     DataHolder { user: (0..9).map(file).collect(), ..DataHolder::default() }
 }
 
+/// A MicroLogix 1100 without modules.
+fn io() -> IoConfiguration<'static> {
+    let onboard = PackedIo { slot_count: 1, offset: 4, ..PackedIo::default() };
+    IoConfiguration { model: Model(61), layout: IoLayout::Packed(onboard) }
+}
+
+fn channels() -> ChannelConfiguration<'static> {
+    ChannelConfiguration { model: Model(61), tail: &[0; 11], ..ChannelConfiguration::default() }
+}
+
 /// The payloads that make up the sample, and the whole of it as a file.
 fn payloads() -> Vec<(StreamKind, Vec<u8>)> {
     let mut all = vec![
@@ -72,6 +85,9 @@ fn payloads() -> Vec<(StreamKind, Vec<u8>)> {
         (StreamKind::ExtensionalDataFiles, serialize(&ExtensionalDataFiles(data())).expect("writes")),
         (StreamKind::Processor, serialize(&rss::processor::Processor::default()).expect("writes")),
         (StreamKind::MemDatabase, serialize(&rss::database::Database::default()).expect("writes")),
+        (StreamKind::IoConfiguration, serialize(&io()).expect("writes")),
+        (StreamKind::ChannelConfiguration, serialize(&channels()).expect("writes")),
+        (StreamKind::Compiler, serialize(&rss::compiler::Compiler::default()).expect("writes")),
         (StreamKind::Contents, small::CONTENTS.to_vec()),
     ];
     all.extend(small::CONSTANTS.iter().map(|constant| (constant.kind, constant.payload())));
