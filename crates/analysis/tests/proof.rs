@@ -213,7 +213,7 @@ fn names_and_values_are_those_of_the_sides() {
 #[test]
 fn proven_programs_stay_proven() {
     let scans = if cfg!(debug_assertions) { 5_000 } else { 100_000 };
-    for program in migrated::proven() {
+    for program in migrated::proven(true) {
         let options = Options { scans, ..Options::default() };
         let report = prove_domore(&program.image, &program.project, &program.map, Some(&program.fates), &options);
         println!("{}: {} conditions {}", program.name, report.verdict().as_str(), report.conditions_covered());

@@ -76,6 +76,8 @@ pub(crate) struct Campaign<'c, B: Side> {
     pub(crate) episodes: u64,
     pub(crate) mode_changes: u64,
     pub(crate) stops: u64,
+    /// Stretches that ended because the inputs left the stated conditions.
+    pub(crate) outside: u64,
     pub(crate) time: Duration,
     budget: u64,
     /// A timed interrupt runs in the original: times between scans stay short, so that it comes no more
@@ -133,6 +135,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             episodes: 0,
             mode_changes: 0,
             stops: 0,
+            outside: 0,
             time: Duration::ZERO,
             budget,
             short,
@@ -157,14 +160,15 @@ impl<'c, B: Side> Campaign<'c, B> {
             self.begin();
             match round % 8 {
                 0..3 => self.aim(),
-                3 if self.random.chance(1, 2) => self.to_a_preset(),
+                3 if self.random.chance(1, 2) => self.reach_preset(),
                 3 => self.wait_long(),
                 4 => self.change_mode(),
                 5 if round % 1024 == 5 => self.wait_days(),
                 5 => self.steady(),
                 _ => self.wander(),
             }
-            if self.open() && self.both.a.stopped().is_some() && self.random.chance(1, 4) {
+            let stopped = self.both.a.stopped().is_some() && self.both.b.stopped().is_some();
+            if self.open() && stopped && self.random.chance(1, 4) {
                 // Back into run after a fault, as a person would.
                 self.scan(true, 0);
                 self.wander();
@@ -258,7 +262,10 @@ impl<'c, B: Side> Campaign<'c, B> {
             return;
         }
         if self.both.a.stopped().is_some() {
-            self.stops += 1;
+            match self.both.b.stopped() {
+                Some(_) => self.stops += 1,
+                None => self.outside += 1,
+            }
         }
         if self.seen.take_fresh() | !self.goals.fresh.is_empty() {
             self.quiet = 0;
@@ -287,7 +294,7 @@ impl<'c, B: Side> Campaign<'c, B> {
     fn some_dt(&mut self) -> u32 {
         match self.random.below(8) {
             0 => self.random.pick(&PACES).copied().unwrap_or(10) * 1000,
-            1 if self.pace % 3 == 0 => 1000 * (1 + self.random.below(50) as u32),
+            1 if self.pace.is_multiple_of(3) => 1000 * (1 + self.random.below(50) as u32),
             _ => self.pace,
         }
     }
@@ -446,7 +453,7 @@ impl<'c, B: Side> Campaign<'c, B> {
     }
 
     /// To the millisecond a timer is done in: a preset that is off by one must show.
-    fn to_a_preset(&mut self) {
+    fn reach_preset(&mut self) {
         if self.random.chance(1, 2) {
             self.change();
         }
@@ -593,6 +600,8 @@ pub(crate) fn compare<B: Side>(both: &Both<B>, pairs: &Pairs, buffers: &mut [Vec
         (None, None) => pairs.difference(&both.a, &both.b, buffers).map(Difference::Value),
         // Stopped alike: outputs are off on both; data is what the fault left.
         (Some(_), Some(_)) => pairs.output_on(&both.b).map(Difference::Value),
+        // The inputs left the conditions under which the programs are the same: nothing follows from it.
+        (Some(_), None) if both.a.machine.fault().is_some_and(|fault| pairs.is_stated(fault)) => None,
         (Some(why), None) => Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code))),
         (None, Some(why)) => Some(Difference::OtherStopped(why)),
     }

@@ -48,7 +48,11 @@ impl<B: Side> Player<'_, B> {
             if let Some(difference) = compare(&self.scratch, self.pairs, &mut buffers) {
                 return Some((index + 1, difference));
             }
-            if self.scratch.a.stopped().is_some() && tape.get(index + 1).is_none_or(|next| !next.0.program_run) {
+            let stopped = [self.scratch.a.stopped().is_some(), self.scratch.b.stopped().is_some()];
+            if stopped == [true, false] {
+                return None;
+            }
+            if stopped[0] && tape.get(index + 1).is_none_or(|next| !next.0.program_run) {
                 return None;
             }
         }

@@ -175,7 +175,9 @@ fn prove<B: Side>(
         (0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX)).collect()
     });
     report.not_compared = tainted.len();
-    let pairs = Pairs::new(image, &xref, &a, &b, map, &tainted);
+    let mut pairs = Pairs::new(image, &xref, &a, &b, map, &tainted);
+    let stated = fates.unwrap_or_default().iter().filter(|fate| !fate.conditions.is_empty());
+    pairs.conditions = stated.map(|fate| (fate.file, fate.rung, fate.conditions.clone())).collect();
     let inputs = Inputs::new(image, &xref, &a, &b, &pairs);
     report.take_map(&pairs, &inputs.left_out);
     if pairs.compared() == 0 {

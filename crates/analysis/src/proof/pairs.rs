@@ -113,6 +113,8 @@ pub(crate) struct Pairs {
     points: Vec<Point>,
     texts: Vec<(u32, u32, String, String)>,
     outputs: Vec<(u32, u32, u32)>,
+    /// Program file, rung and conditions: a stop there that a condition names is no difference.
+    pub(crate) conditions: Vec<(u16, u32, Vec<String>)>,
     /// Addresses the program uses that the map does not place, with why.
     pub(crate) unmapped: Vec<(String, String)>,
     /// Rows of the map that could not be used, with why.
@@ -155,6 +157,7 @@ impl Pairs {
             points: Vec::new(),
             texts: Vec::new(),
             outputs: Vec::new(),
+            conditions: Vec::new(),
             unmapped: Vec::new(),
             unusable: Vec::new(),
         };
@@ -289,6 +292,14 @@ impl Pairs {
     fn find(&self, at: u32) -> Option<(&Span, u32, u16)> {
         let span = self.spans.iter().find(|span| (span.a..span.a + 16 * span.words).contains(&at))?;
         Some((span, (at - span.a) / 16, (at & 15) as u16))
+    }
+
+    /// A stated condition says that the original stops with this fault where it is not kept.
+    pub(crate) fn is_stated(&self, fault: sim::MajorFault) -> bool {
+        let code = format!("fault {:04X}", fault.code);
+        let here = |row: &&(u16, u32, Vec<String>)| (row.0, row.1) == (fault.file, u32::from(fault.rung));
+        let mut conditions = self.conditions.iter().filter(here).flat_map(|row| &row.2);
+        conditions.any(|condition| condition.contains(&code) || condition.starts_with("INDIRECT"))
     }
 
     /// How the other side spells a place of the original.

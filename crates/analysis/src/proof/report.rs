@@ -82,6 +82,8 @@ pub struct Report {
     pub mode_changes: u64,
     /// Times both sides stopped alike.
     pub stops: u64,
+    /// Stretches that ended because the original stopped where a stated condition was not kept.
+    pub outside: u64,
     /// Simulated time.
     pub time: Duration,
     /// Words, bits and strings compared after every scan.
@@ -132,6 +134,7 @@ impl Report {
             episodes: 0,
             mode_changes: 0,
             stops: 0,
+            outside: 0,
             time: Duration::ZERO,
             compared: 0,
             not_compared: 0,
@@ -169,6 +172,7 @@ impl Report {
         self.episodes = campaign.episodes;
         self.mode_changes = campaign.mode_changes;
         self.stops = campaign.stops;
+        self.outside = campaign.outside;
         self.time = campaign.time;
         self.inputs = inputs;
         let (reached, all) = campaign.seen.both_ways();
@@ -237,6 +241,9 @@ impl Report {
     }
 }
 
+/// Chooses goals.
+type Of = fn(GoalKind) -> bool;
+
 /// Lines of a list that text shows.
 const LISTED: usize = 40;
 
@@ -258,7 +265,7 @@ impl fmt::Display for Report {
             self.stops
         )?;
         writeln!(f, "{} inputs changed, {} words compared after every scan", self.inputs, self.compared)?;
-        let kinds: [(&str, fn(GoalKind) -> bool); 4] = [
+        let kinds: [(&str, Of); 4] = [
             ("rung conditions", GoalKind::is_rung_condition),
             ("  of these outputs with and without power", |kind| matches!(kind, GoalKind::True | GoalKind::False)),
             ("timers and counters done and not done", |kind| matches!(kind, GoalKind::Done | GoalKind::NotDone)),
@@ -281,6 +288,13 @@ impl fmt::Display for Report {
         let unmapped: Vec<String> = self.unmapped.iter().map(|(what, why)| format!("{what}: {why}")).collect();
         list(f, "without a place on both sides", &unmapped)?;
         list(f, "same behaviour under these conditions only", &self.conditions)?;
+        if self.outside > 0 {
+            let times = self.outside;
+            writeln!(
+                f,
+                "\n{times} stretches ended where such a condition was not kept: the original stopped with the fault"
+            )?;
+        }
         let goal = |goal: &Goal| format!("{} {} {}", goal.location, goal.text, goal.kind.as_str());
         let missing: Vec<String> = self.rungs().iter().flat_map(|rung| &rung.missing).map(goal).collect();
         list(f, "not reached", &missing)?;

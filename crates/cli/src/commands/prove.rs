@@ -191,6 +191,7 @@ pub fn describe(report: &Report, names: &[String; 2]) -> Value {
         "time_s": report.time.as_secs_f64(),
         "mode_changes": report.mode_changes,
         "stopped_alike": report.stops,
+        "left_conditions": report.outside,
         "inputs": report.inputs,
         "compared_words": report.compared,
         "not_compared_words": report.not_compared,
