@@ -177,6 +177,7 @@ fn prove<B: Side>(
     report.not_compared = tainted.len();
     let mut pairs = Pairs::new(image, &xref, &a, &b, map, &tainted);
     let stated = fates.unwrap_or_default().iter().filter(|fate| !fate.conditions.is_empty());
+    pairs.persons.clone_from(&persons);
     pairs.conditions = stated.map(|fate| (fate.file, fate.rung, fate.conditions.clone())).collect();
     let inputs = Inputs::new(image, &xref, &a, &b, &pairs);
     report.take_map(&pairs, &inputs.left_out);

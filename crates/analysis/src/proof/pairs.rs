@@ -115,6 +115,8 @@ pub(crate) struct Pairs {
     outputs: Vec<(u32, u32, u32)>,
     /// Program file, rung and conditions: a stop there that a condition names is no difference.
     pub(crate) conditions: Vec<(u16, u32, Vec<String>)>,
+    /// Rungs left to a person: what they do in the original is not compared, a stop included.
+    pub(crate) persons: BTreeSet<(u16, u32)>,
     /// Addresses the program uses that the map does not place, with why.
     pub(crate) unmapped: Vec<(String, String)>,
     /// Rows of the map that could not be used, with why.
@@ -158,6 +160,7 @@ impl Pairs {
             texts: Vec::new(),
             outputs: Vec::new(),
             conditions: Vec::new(),
+            persons: BTreeSet::new(),
             unmapped: Vec::new(),
             unusable: Vec::new(),
         };
@@ -294,12 +297,14 @@ impl Pairs {
         Some((span, (at - span.a) / 16, (at & 15) as u16))
     }
 
-    /// A stated condition says that the original stops with this fault where it is not kept.
+    /// A stated condition says that the original stops with this fault where it is not kept, or the rung is
+    /// left to a person anyway.
     pub(crate) fn is_stated(&self, fault: sim::MajorFault) -> bool {
         let code = format!("fault {:04X}", fault.code);
         let here = |row: &&(u16, u32, Vec<String>)| (row.0, row.1) == (fault.file, u32::from(fault.rung));
         let mut conditions = self.conditions.iter().filter(here).flat_map(|row| &row.2);
-        conditions.any(|condition| condition.contains(&code) || condition.starts_with("INDIRECT"))
+        self.persons.contains(&(fault.file, u32::from(fault.rung)))
+            || conditions.any(|condition| condition.contains(&code) || condition.starts_with("INDIRECT"))
     }
 
     /// How the other side spells a place of the original.

@@ -247,7 +247,7 @@ impl Side for Slc {
 
     fn stopped(&self) -> Option<String> {
         match (self.machine.fault(), self.machine.mode()) {
-            (Some(fault), _) => Some(format!("major fault {fault}")),
+            (Some(fault), _) => Some(fault.to_string()),
             (None, sim::Mode::Suspend) => Some("suspended by SUS".to_owned()),
             _ => None,
         }
