@@ -191,8 +191,7 @@ fn prove<B: Side>(
     let goals = Goals::new(image, &xref, &both.a);
     let solver = Solver::new(image, &both.a, inputs.all.iter().map(|input| (input.at, input.kind)));
     let base = Both { a: both.a.fork(), b: both.b.fork() };
-    let calls = CallGraph::build(image, &image.documentation);
-    let short = calls.files.iter().flat_map(|file| &file.entries).any(|it| it.kind == EntryKind::TimedInterrupt);
+    let short = has_timed_interrupt(image);
     if short {
         let why = "a timed interrupt runs in the original: scans were at most 10 ms apart";
         report.notes.push(why.to_owned());
@@ -281,6 +280,16 @@ fn date<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs) 
         }
     }
     presets
+}
+
+/// A timed interrupt can come: a file is set up for one, and a period stands in the data or is written.
+fn has_timed_interrupt(image: &Image) -> bool {
+    let calls = CallGraph::build(image, &image.documentation);
+    let named = |kind| calls.files.iter().flat_map(|file| &file.entries).any(|entry| entry.kind == kind);
+    let value = |text: &str| Address::parse(text).ok().and_then(|address| image.value_at(&address));
+    let period = ["S:30", "STI:0.SPM"].into_iter().filter_map(value).any(|value| value != ladder::Value::Word(0));
+    let started = crate::instructions(image).any(|(_, it)| matches!(it.mnemonic.name(), Some("STS" | "STE")));
+    named(EntryKind::TimedInterrupt) && (period || started)
 }
 
 /// Timers the program runs: place of PRE and milliseconds per count.
