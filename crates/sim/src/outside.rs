@@ -77,7 +77,8 @@ pub(crate) fn address(text: &str) -> Result<Address, ladder::AddressError> {
     Address::parse(text).or_else(|why| named(text).or_else(|| linear(text)).ok_or(why))
 }
 
-/// The image with named bits in place of their texts, and the texts; `None` when it has none.
+/// The image with places for the texts it has in place of addresses, and what there is to say about them;
+/// `None` when it has no such text.
 pub(crate) fn resolve(image: &Image) -> Option<(Image, Vec<String>)> {
     let text = |operand: &Operand| match operand {
         Operand::Text(text) => named(text).is_some(),
@@ -91,22 +92,34 @@ pub(crate) fn resolve(image: &Image) -> Option<(Image, Vec<String>)> {
     }
     let mut image = image.clone();
     let mut found = Vec::new();
+    let modular = image.processor.family.id().starts_with("slc-5/");
     for rung in image.program_files.iter_mut().flat_map(|file| &mut file.rungs) {
-        replace(&mut rung.series, &mut found);
+        replace(&mut rung.series, modular, &mut found);
     }
     found.sort();
     found.dedup();
     Some((image, found))
 }
 
-fn replace(series: &mut Series, found: &mut Vec<String>) {
+fn replace(series: &mut Series, modular: bool, found: &mut Vec<String>) {
     for element in series {
         match element {
             Element::Instruction(instruction) => {
                 for operand in &mut instruction.operands {
                     let address = match operand {
-                        Operand::Symbol(text) => linear(text),
-                        Operand::Text(text) => named(text).inspect(|_| found.push(text.clone())),
+                        Operand::Symbol(text) => linear(text).inspect(|_| {
+                            if modular {
+                                found.push(format!(
+                                    "{text}: it is taken as a bit of slot 0; which word of a chassis it is depends on \
+                                     the I/O configuration"
+                                ));
+                            }
+                        }),
+                        Operand::Text(text) => named(text).inspect(|_| {
+                            found.push(format!(
+                                "{text}: where the processor keeps this bit is not known: it has a place of its own"
+                            ));
+                        }),
                         _ => None,
                     };
                     if let Some(address) = address {
@@ -114,7 +127,7 @@ fn replace(series: &mut Series, found: &mut Vec<String>) {
                     }
                 }
             }
-            Element::Branch(branch) => branch.legs.iter_mut().for_each(|leg| replace(leg, found)),
+            Element::Branch(branch) => branch.legs.iter_mut().for_each(|leg| replace(leg, modular, found)),
         }
     }
 }

@@ -28,10 +28,7 @@ const MAX_OPS: usize = 4_000_000;
 pub(crate) fn compile(image: &Image, options: &Options) -> Result<(Compiled, Vec<Approximation>), Vec<Refusal>> {
     if let Some((image, named)) = outside::resolve(image) {
         let (compiled, mut approximations) = compile(&image, options)?;
-        for name in named {
-            let why = format!("{name}: where the processor keeps this bit is not known: it has a place of its own");
-            approximations.push(Approximation { site: None, why });
-        }
+        approximations.extend(named.into_iter().map(|why| Approximation { site: None, why }));
         return Ok((compiled, approximations));
     }
     let family = family_of(image, options);
