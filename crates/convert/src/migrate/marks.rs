@@ -4,8 +4,9 @@ use std::fmt;
 
 /// A trap: why a rung holds under a condition only, or needs a person.
 ///
-/// The vendor's own translator publishes no list of marks that was found, so these codes are this
-/// program's own.
+/// The codes are this program's own. Where the vendor's translator for another target, from SLC 500 to
+/// Logix, puts a numbered mark (its instruction PCE, program conversion error) for the same trap,
+/// [`Mark::pce`] names it, because integrators know these numbers. No list for Do-more was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Mark {
     /// Time base, preset or accumulator of a timer.
@@ -46,6 +47,12 @@ pub enum Mark {
     Operand,
 }
 
+/// Numbers of the vendor's PCE marks, from its published help ("Program Conversion Error (PCE)", Logix
+/// Designer 37): 102 OV or UN of a counter, 103 status file, 107 index to be validated, 120 types of
+/// source and destination of a copy.
+const PCE: [(Mark, u16); 5] =
+    [(Mark::MathRegister, 103), (Mark::Indirect, 107), (Mark::OverUnder, 102), (Mark::Status, 103), (Mark::Files, 120)];
+
 /// Codes and titles; one row per mark.
 const MARKS: [(Mark, &str, &str); 18] = [
     (Mark::TimerBase, "TIMER-BASE", "time base, preset or accumulator of a timer"),
@@ -77,6 +84,11 @@ impl Mark {
     /// The code in reports: `TIMER-BASE`.
     pub fn code(self) -> &'static str {
         MARKS.iter().find(|row| row.0 == self).map_or("UNKNOWN", |row| row.1)
+    }
+
+    /// The vendor's mark for the same trap.
+    pub fn pce(self) -> Option<u16> {
+        PCE.iter().find(|row| row.0 == self).map(|row| row.1)
     }
 
     /// What it is about, in words.

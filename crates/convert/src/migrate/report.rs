@@ -80,6 +80,8 @@ pub struct MarkRow {
     pub code: &'static str,
     /// What it is about.
     pub title: &'static str,
+    /// The vendor's PCE mark for the same trap, if it has one.
+    pub pce: Option<u16>,
     /// Rungs with a condition of this code.
     pub conditions: usize,
     /// Rungs that need a person for this.
@@ -151,6 +153,7 @@ impl Report {
                 .map(|mark| MarkRow {
                     code: mark.code(),
                     title: mark.title(),
+                    pce: mark.pce(),
                     conditions: marked(mark, Verdict::Condition),
                     persons: marked(mark, Verdict::Person),
                 })

@@ -79,13 +79,17 @@ fn summary(out: &mut String, report: &Report) {
     out.push_str("</table>\n");
     if !report.marks.is_empty() {
         out.push_str(
-            "<table>\n<tr><th>Code</th><th>Trap</th><th class=\"number\">Conditions</th><th class=\"number\">Persons</th></tr>\n",
+            "<table>\n<tr><th>Code</th><th>PCE</th><th>Trap</th><th class=\"number\">Conditions</th><th class=\"number\">Persons</th></tr>\n",
         );
         for row in &report.marks {
             let _ = writeln!(
                 out,
-                "<tr><td><code>{}</code></td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>",
-                row.code, row.title, row.conditions, row.persons
+                "<tr><td><code>{}</code></td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>",
+                row.code,
+                row.pce.map(|number| number.to_string()).unwrap_or_default(),
+                row.title,
+                row.conditions,
+                row.persons
             );
         }
         out.push_str("</table>\n");
