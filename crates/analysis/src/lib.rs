@@ -9,12 +9,14 @@
 //! * [`TimerReport`]: every timer and counter with its parameters, its seconds and its rungs.
 //! * [`CallGraph`]: which program file runs because of which rung or interrupt.
 //! * [`Coverage`]: how much of the program is documented.
+//! * [`diff`]: what differs between two programs.
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
 
 mod budget;
 mod calls;
 mod coverage;
 pub mod csv;
+pub mod diff;
 mod location;
 pub mod proof;
 mod space;
