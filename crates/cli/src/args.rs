@@ -88,6 +88,13 @@ pub enum Command {
                             in part; 2: bad use; 3: a program or map that cannot be read. See docs/proof.md for what a verdict means."
     )]
     Prove(ProveArguments),
+    /// What changed between two programs, rung by rung; documentation, values and configuration apart
+    #[command(
+        after_help = "Example: rungs diff conveyor_old.RSS conveyor.RSS\n         rungs diff conveyor.RSS --online\n         \
+                            rungs diff archive/2023 archive/2024 --only logic --json\n\n\
+                            Exit code 0: equal in what --only names; 1: a difference; 2: bad use; 3: unreadable."
+    )]
+    Diff(DiffArguments),
 }
 
 /// Which copy of the program a project holds to work on.
@@ -391,6 +398,50 @@ pub struct ProveArguments {
     pub json: bool,
     #[command(flatten)]
     pub simulation: Simulation,
+}
+
+#[derive(Args)]
+pub struct DiffArguments {
+    /// The old program: a project, SLC text or JSON project; or a folder of projects
+    #[arg(value_name = "A")]
+    pub old: PathBuf,
+    /// The new program, or a folder whose files have the same names
+    #[arg(value_name = "B")]
+    pub new: Option<PathBuf>,
+    /// Compare the image last exchanged with a processor with the program in the same file
+    #[arg(long)]
+    pub online: bool,
+    /// What counts and is shown; default: everything
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "SECTION")]
+    pub only: Vec<Section>,
+    /// Rungs as text, one below the other, whatever the width
+    #[arg(long, conflicts_with = "two_sided")]
+    pub unified: bool,
+    /// Rungs drawn side by side, whatever the width
+    #[arg(long)]
+    pub two_sided: bool,
+    /// Columns; default: the terminal's width, 100 in a pipe
+    #[arg(long)]
+    pub width: Option<usize>,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// JSON, one document per line and pair of files
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A part of a comparison.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Section {
+    /// Rungs and program files
+    Logic,
+    /// Symbols, descriptions, comments, page titles
+    Documentation,
+    /// Contents of data files, and forces
+    Values,
+    /// Processor, I/O, channels, shape of data files, names of program files
+    Configuration,
 }
 
 #[derive(Args)]

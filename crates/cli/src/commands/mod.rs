@@ -3,6 +3,7 @@
 mod bench;
 mod build;
 mod data;
+mod diff;
 mod domore;
 mod export;
 mod info;
@@ -45,6 +46,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Test(arguments) => test::run(&arguments),
         Command::Migrate(arguments) => migrate::run(&arguments),
         Command::Prove(arguments) => prove::run(&arguments),
+        Command::Diff(arguments) => diff::run(&arguments),
     }
 }
 

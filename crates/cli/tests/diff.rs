@@ -1,0 +1,141 @@
+//! `rungs diff` as a user runs it: what it prints, its JSON, its exit codes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const OLD: &str = "SOR XIC I:0/0 BST XIC B3:0/1 NXB XIO B3:0/2 BND OTE O:0/0 EOR
+SOR XIC B3:0/3 TON T4:0 0.01 100 0 EOR
+SOR XIC T4:0/DN CTU C5:0 10 0 EOR
+SOR XIC C5:0/DN RES C5:0 EOR
+SOR GRT N7:0 50 MOV N7:0 N7:1 EOR
+";
+
+/// One contact of rung 0 is another one, rung 3 stands first, rung 2 is gone, one is new.
+const NEW: &str = "SOR XIC C5:0/DN RES C5:0 EOR
+SOR XIC I:0/0 BST XIC B3:0/1 NXB XIO B3:0/7 BND OTE O:0/0 EOR
+SOR XIC B3:0/3 TON T4:0 0.01 100 0 EOR
+SOR GRT N7:0 50 MOV N7:0 N7:1 EOR
+SOR LES N7:5 12 OTL B3:1/4 EOR
+";
+
+/// A folder of its own for each test, with both programs.
+fn folder(name: &str, texts: &[(&str, &str)]) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diff").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    for (file, text) in texts {
+        let path = folder.join(file);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(&path, whole(text)).expect("a file");
+    }
+    folder
+}
+
+/// The rungs as program file 2 of a project text.
+fn whole(rungs: &str) -> String {
+    let (head, _) = include_str!("../../../examples/motor/motor.SLC").split_once("LADDER 2").expect("a ladder");
+    format!("{head}LADDER 2\n{rungs}")
+}
+
+fn diff(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rungs"));
+    command.current_dir(folder).arg("diff").args(arguments).env_remove("NO_COLOR").output().expect("the command starts")
+}
+
+fn text(output: &Output, code: i32) -> String {
+    assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+#[test]
+fn rungs_are_told_apart_by_what_happened_to_them() {
+    let folder = folder("text", &[("old.SLC", OLD), ("new.SLC", NEW)]);
+    insta::assert_snapshot!("unified", text(&diff(&folder, &["old.SLC", "new.SLC"]), 1));
+    let wide = ["old.SLC", "new.SLC", "--two-sided", "--width", "130", "--only", "logic"];
+    insta::assert_snapshot!("two_sided", text(&diff(&folder, &wide), 1));
+}
+
+#[test]
+fn json_names_file_and_rungs() {
+    let folder = folder("json", &[("old.SLC", OLD), ("new.SLC", NEW)]);
+    let json: Value =
+        serde_json::from_str(&text(&diff(&folder, &["old.SLC", "new.SLC", "--json"]), 1)).expect("a document");
+    let logic = json["logic"].as_array().expect("logic").iter();
+    let rows: Vec<_> = logic
+        .map(|row| {
+            (
+                row["kind"].as_str().unwrap_or(""),
+                row["file"].as_u64(),
+                row["old_rung"].as_u64(),
+                row["new_rung"].as_u64(),
+            )
+        })
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            ("moved", Some(2), Some(3), Some(0)),
+            ("changed", Some(2), Some(0), Some(1)),
+            ("deleted", Some(2), Some(2), None),
+            ("inserted", Some(2), None, Some(4)),
+        ]
+    );
+    let edit = &json["logic"][1]["edits"][0];
+    assert_eq!((&edit["old"], &edit["new"]), (&Value::from("B3:0/2"), &Value::from("B3:0/7")));
+    for section in ["documentation", "values", "configuration"] {
+        assert_eq!(json[section], Value::Array(Vec::new()), "{section}");
+    }
+}
+
+#[test]
+fn exit_codes_say_equal_different_misused_unreadable() {
+    let folder = folder("codes", &[("old.SLC", OLD), ("new.SLC", NEW), ("one/a.SLC", OLD)]);
+    std::fs::write(folder.join("broken.RSS"), b"nothing").expect("a file");
+    for (arguments, code) in [
+        (vec!["old.SLC", "old.SLC"], 0),
+        (vec!["old.SLC", "new.SLC"], 1),
+        (vec!["old.SLC", "new.SLC", "--only", "documentation,values,configuration"], 0),
+        (vec!["old.SLC", "new.SLC", "--only", "logic", "--json"], 1),
+        (vec!["old.SLC"], 2),
+        (vec!["old.SLC", "new.SLC", "--online"], 2),
+        (vec!["old.SLC", "--online"], 2),
+        (vec!["old.SLC", "new.SLC", "--only", "colour"], 2),
+        (vec!["old.SLC", "one"], 2),
+        (vec!["old.SLC", "broken.RSS"], 3),
+        (vec!["missing.RSS", "old.SLC"], 3),
+    ] {
+        assert_eq!(diff(&folder, &arguments).status.code(), Some(code), "{arguments:?}");
+    }
+}
+
+#[test]
+fn folders_are_compared_by_names() {
+    let folder = folder("folders", &[]);
+    let motor = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/motor/motor.RSS");
+    for (to, names) in [("one", vec!["motor.RSS", "gone.RSS"]), ("two", vec!["MOTOR.rss"])] {
+        std::fs::create_dir_all(folder.join(to)).expect("a folder");
+        for name in names {
+            std::fs::copy(&motor, folder.join(to).join(name)).expect("a copy");
+        }
+    }
+    let found = text(&diff(&folder, &["one", "two"]), 1);
+    assert!(found.contains("gone.RSS: only in one"), "{found}");
+    assert!(found.contains("Logic: equal"), "{found}");
+    std::fs::remove_file(folder.join("one/gone.RSS")).expect("the file");
+    let json: Value = serde_json::from_str(&text(&diff(&folder, &["one", "two", "--json"]), 0)).expect("a document");
+    assert_eq!(json["equal"], true);
+}
+
+#[test]
+fn what_a_project_says_cannot_command_a_terminal() {
+    // U+009B begins a command in terminals that take 8-bit controls; a text with escapes is no project text.
+    let comment = "% TITLE/RUNG DESCRIPTION\nTITLE: \u{9B}31m\nRUNG DESCRIPTION: a\u{9B}2Jb %\n";
+    let evil = NEW.replace("OTL B3:1/4 EOR\n", &format!("OTL B3:1/4 EOR\n{comment}"));
+    let folder = folder("escapes", &[("old.SLC", OLD), ("new.SLC", &evil)]);
+    for look in ["--unified", "--two-sided"] {
+        let found = text(&diff(&folder, &["old.SLC", "new.SLC", look]), 1);
+        assert!(!found.contains(['\u{9B}', '\u{1B}']), "{look}: {found}");
+        assert!(found.contains("a\\x9B2Jb"), "{look}: {found}");
+    }
+}
