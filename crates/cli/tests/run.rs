@@ -229,7 +229,8 @@ fn do_more_text_runs_with_the_same_options() {
     let folder = std::env::temp_dir().join(format!("rungs-run-domore-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let path = folder.join("flash.txt");
-    std::fs::write(&path, "$PRGRM $Main\n\nSTR X0\nTMR T0 20\n\nSTR T0.Done\nOUT Y0\n\n$PGMEND $Main\n").expect("a file");
+    std::fs::write(&path, "$PRGRM $Main\n\nSTR X0\nTMR T0 20\n\nSTR T0.Done\nOUT Y0\n\n$PGMEND $Main\n")
+        .expect("a file");
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_rungs"))
         .arg("run")
         .arg(&path)
