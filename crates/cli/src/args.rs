@@ -63,9 +63,11 @@ pub enum Command {
                             The first scan after entering run has no time before it; every later one comes --scan after the last.")]
     Run(RunArguments),
     /// Measures how fast a program runs here: instructions per scan, scans per second, time per instruction
-    #[command(after_help = "Example: rungs bench conveyor.RSS\n         rungs bench conveyor.RSS --scans 100000 --json\n\n\
+    #[command(
+        after_help = "Example: rungs bench conveyor.RSS\n         rungs bench conveyor.RSS --scans 100000 --json\n\n\
                             Inputs are at rest. Only the simulator is measured: a scan here has nothing to do with the scan time \
-                            of the controller. Exit code 1: the program stopped by a fault, or is refused.")]
+                            of the controller. Exit code 1: the program stopped by a fault, or is refused."
+    )]
     Bench(BenchArguments),
     /// Runs scenarios (TOML) and reports every expectation that is not met
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\

@@ -177,7 +177,7 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
             };
         }
     }
-    let mut both = Both::new(&image, &Options { only_confirmed: seed % 4 == 0 });
+    let mut both = Both::new(&image, &Options { only_confirmed: seed.is_multiple_of(4) });
     let persons: Vec<_> = both.migration.rungs.iter().filter(|rung| rung.verdict == Verdict::Person).collect();
     if !persons.is_empty() {
         // What stands open is not comparable.

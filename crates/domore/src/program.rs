@@ -356,7 +356,7 @@ pub enum CommentKind {
     /// `COMMENT`.
     #[default]
     Plain,
-    /// `FMT_COMMENT`: a small subset of HTML, see [`Comment::text`].
+    /// `FMT_COMMENT`: a small subset of HTML, see [`Comment::plain_lines`].
     Formatted,
     /// Another section that stands among rungs; its word. Carried.
     Other(String),

@@ -1,12 +1,12 @@
 //! What differs between two programs: logic, documentation, values and configuration apart.
 //!
 //! Rungs are matched before they are compared, so that a rung keeps its partner when others are
-//! inserted, deleted or moved around it: equal rungs first, in order ([`align`]), then equal rungs that
-//! changed their place, then similar ones. Two rungs are equal when [`keys`] gives them one number; it
+//! inserted, deleted or moved around it: equal rungs first, in order (`align`), then equal rungs that
+//! changed their place, then similar ones. Two rungs are equal when `keys` gives them one number; it
 //! interns whole texts, so that different rungs never share one. Values that RSLogix only displays in a
 //! rung are not part of it.
 //!
-//! Work is bounded by [`align::Work`]: beyond it the result is still true, but a rung may be told as
+//! Work is bounded by `align::Work`: beyond it the result is still true, but a rung may be told as
 //! deleted and inserted where a person would say changed; [`Difference::notes`] then says so.
 
 mod align;
