@@ -10,10 +10,12 @@
 //! * [`CallGraph`]: which program file runs because of which rung or interrupt.
 //! * [`Coverage`]: how much of the program is documented.
 //! * [`diff`]: what differs between two programs.
+//! * [`checks`]: what an experienced engineer would question, with codes.
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
 
 mod budget;
 mod calls;
+pub mod checks;
 mod coverage;
 pub mod csv;
 pub mod diff;
