@@ -40,6 +40,14 @@ pub enum Command {
     /// Cross reference: who reads and who writes, word, file, indexed and indirect access included
     #[command(after_help = "Example: rungs xref conveyor.RSS O:2/5\n         rungs xref conveyor.RSS --findings")]
     Xref(XrefArguments),
+    /// What an experienced engineer would question: findings with codes and the rung drawn
+    #[command(
+        after_help = "Example: rungs check conveyor.RSS\n         rungs check plant/ --level warning --no-draw\n         \
+                            rungs check conveyor.RSS --only OUT01,TIM\n         rungs check --explain OUT01\n\n\
+                            Exit code 0: no finding at error level; 1: at least one; 2: bad use; 3: unreadable. All checks, rules and \
+                            comments that take findings out: docs/checks.md."
+    )]
+    Check(CheckArguments),
     /// Lossless check: bytes understood, byte-identical rewrite, compiled code agrees with operands
     #[command(after_help = "Example: rungs verify conveyor.RSS\n         rungs verify --json archive/ > verify.jsonl")]
     Verify(VerifyArguments),
@@ -202,6 +210,44 @@ pub struct XrefArguments {
     pub findings: bool,
     #[command(flatten)]
     pub input: Input,
+}
+
+#[derive(Args)]
+pub struct CheckArguments {
+    /// Projects or folders of projects
+    #[arg(required_unless_present = "explain", value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Only these checks, those that are off included: codes (OUT01) or subjects (OUT)
+    #[arg(long, value_name = "CODES", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Without these checks
+    #[arg(long, value_name = "CODES", value_delimiter = ',')]
+    pub skip: Vec<String>,
+    /// Findings of this level and above
+    #[arg(long, value_enum, default_value_t)]
+    pub level: CheckLevel,
+    /// File of rules that take findings out, besides .rungs-check.toml beside each project
+    #[arg(long, value_name = "FILE")]
+    pub suppress: Option<PathBuf>,
+    /// Do not draw rungs
+    #[arg(long)]
+    pub no_draw: bool,
+    /// Explain a check and do nothing else
+    #[arg(long, value_name = "CODE")]
+    pub explain: Option<String>,
+    #[command(flatten)]
+    pub input: Input,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum CheckLevel {
+    /// It cannot work so
+    Error,
+    /// Often wrong
+    Warning,
+    /// Worth knowing
+    #[default]
+    Note,
 }
 
 #[derive(Args)]

@@ -2,6 +2,7 @@
 
 mod bench;
 mod build;
+mod check;
 mod data;
 mod diff;
 mod domore;
@@ -38,6 +39,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Data(arguments) => data::run(&arguments),
         Command::Timers(arguments) => timers::run(&arguments),
         Command::Xref(arguments) => xref::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
@@ -282,4 +284,26 @@ fn places(locations: &[analysis::Location], left_out: usize) -> String {
 
 fn more(left_out: usize) -> String {
     format!("and {left_out} more")
+}
+
+/// How rungs are drawn between other results: as wide as the terminal, values left to `rungs show`.
+fn drawing_style(width: Option<usize>) -> render::Style {
+    let terminal = std::io::stdout().is_terminal();
+    let columns = || terminal_size::terminal_size().filter(|_| terminal).map(|(width, _)| usize::from(width.0));
+    render::Style {
+        width: width.or_else(columns).unwrap_or(100),
+        color: check::is_coloured(),
+        values: false,
+        ..render::Style::default()
+    }
+}
+
+/// Draws the rung of a place, nothing if there is none.
+fn draw_rung(opened: &Opened, at: analysis::Location, style: &render::Style, out: &mut dyn Write) -> Result<(), Error> {
+    let index = usize::try_from(at.rung).unwrap_or(usize::MAX);
+    if let Some(file) = opened.image().program_file(at.file).filter(|file| index < file.rungs.len()) {
+        let text = render::rung(opened.image(), file, index, opened.documentation(), style);
+        out.write_all(text.as_bytes())?;
+    }
+    Ok(())
 }
