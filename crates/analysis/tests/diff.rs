@@ -381,6 +381,29 @@ fn never_verified_presets_are_logic() {
 }
 
 #[test]
+fn setups_of_messages_are_logic_where_both_sides_have_them() {
+    let with = |target: Option<&str>| {
+        let mut image = ladder_of("XIC B3:0/0 MSG MG9:0");
+        for instruction in image
+            .program_files
+            .iter_mut()
+            .flat_map(|file| &mut file.rungs)
+            .flat_map(|rung| instructions(&mut rung.series))
+        {
+            let settings = |target: &str| vec![("Target Address".into(), target.to_owned())];
+            instruction.message = target.map(|target| Box::new(ladder::MessageSetup { settings: settings(target) }));
+        }
+        image
+    };
+    let found = difference(&with(Some("N7:0")), &with(Some("N7:5")));
+    let rung = only(&found, ChangeKind::Changed).expect("one rung");
+    assert!(rung.edits.iter().all(|edit| edit.kind == EditKind::Setting && edit.new == "Target Address: N7:5"));
+    assert!(!rung.edits.is_empty());
+    let text = difference(&with(Some("N7:0")), &with(None));
+    assert!(text.logic.is_empty() && text.notes.len() == 1, "{text:?}");
+}
+
+#[test]
 fn a_changed_contact_and_a_changed_branch_are_told_apart() {
     let old = ladder_of("BST XIC B3:0/0 NXB XIC B3:0/1 BND OTE O:0/0");
     for (text, kinds) in [

@@ -88,8 +88,19 @@ pub(super) fn words(rung: &Rung) -> Vec<Word> {
     words_of(&tokens, &whole)
 }
 
-/// Something differs in two rungs of equal numbers: values that are program on at least one side.
+/// Instructions whose set-up only one of two rungs of equal numbers has: rung text holds none.
+pub(super) fn one_sided_setups(old: Half<'_>, new: Half<'_>) -> usize {
+    let pairs = old.rung.instructions().zip(new.rung.instructions());
+    pairs.filter(|(a, b)| a.message.is_some() != b.message.is_some()).count()
+}
+
+/// Something differs in two rungs of equal numbers: set-ups of messages, or values that are program on at
+/// least one side.
 pub(super) fn values_differ(old: Half<'_>, new: Half<'_>) -> bool {
+    let mut setups = old.rung.instructions().zip(new.rung.instructions());
+    if setups.any(|(a, b)| matches!((&a.message, &b.message), (Some(a), Some(b)) if a != b)) {
+        return true;
+    }
     let open = |rung: &Rung| rung.instructions().any(|instruction| !instruction.compiled);
     if !open(old.rung) && !open(new.rung) {
         return false;
@@ -264,10 +275,9 @@ fn piece_similarity(a: Token<'_>, b: Token<'_>) -> u32 {
 
 /// What another setting of a message is called, and its values.
 fn settings(old: (u32, &ladder::Instruction), new: (u32, &ladder::Instruction)) -> Vec<Edit> {
-    let all = |instruction: &ladder::Instruction| {
-        instruction.message.as_ref().map(|setup| setup.settings.clone()).unwrap_or_default()
-    };
-    let (a, b) = (all(old.1), all(new.1));
+    // Where one side has none, as in rung text, nothing is known of a difference.
+    let (Some(a), Some(b)) = (&old.1.message, &new.1.message) else { return Vec::new() };
+    let (a, b) = (&a.settings, &b.settings);
     if a == b {
         return Vec::new();
     }
@@ -275,9 +285,9 @@ fn settings(old: (u32, &ladder::Instruction), new: (u32, &ladder::Instruction)) 
         all.iter().find(|setting| setting.0 == name).map(|setting| setting.1.clone())
     };
     let mut names: Vec<&str> = a.iter().map(|setting| &*setting.0).collect();
-    names.extend(b.iter().map(|setting| &*setting.0).filter(|name| value(&a, name).is_none()));
+    names.extend(b.iter().map(|setting| &*setting.0).filter(|name| value(a, name).is_none()));
     let differing = names.into_iter().filter_map(|name| {
-        let (old, new) = (value(&a, name), value(&b, name));
+        let (old, new) = (value(a, name), value(b, name));
         (old != new).then(|| (name, old.unwrap_or_default(), new.unwrap_or_default()))
     });
     differing

@@ -162,14 +162,11 @@ impl Interner {
         word(text);
         let form = form_of(instruction);
         for (index, operand) in instruction.operands.iter().enumerate() {
-            // Values are compared by `parameters`: whether one is program depends on both sides.
+            // Values are compared by `parameters`, set-ups of messages by `inside`: whether they count depends on
+            // both sides.
             if !matches!(stored(form, index), Stored::Value | Stored::Blank) {
                 spell(operand, kind(form, index), mapping, text);
             }
-            word(text);
-        }
-        for (name, value) in instruction.message.iter().flat_map(|setup| &setup.settings) {
-            let _ = write!(text, "{name}={value}");
             word(text);
         }
     }

@@ -86,11 +86,12 @@ pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> 
     let sides = (left.as_deref().unwrap_or(&raw), right.as_slice());
     let place = |files: &[Keyed<'_>], at: At| Place { file: number(files, at.0), rung: at.1 };
     let mut changes: Vec<(u16, usize, u8, RungChange)> = Vec::new();
-    let mut rungs = Vec::new();
+    let (mut rungs, mut setups) = (Vec::new(), 0);
     for (i, j, found) in &matching.pairs {
         let (from, to) = (place(&raw, *i), place(&right, *j));
         rungs.push((from, to));
         let Some((a, b)) = halves(sides, (old, new), *i, *j) else { continue };
+        setups += inside::one_sided_setups(a, b);
         let changed = a.key.id != b.key.id || inside::values_differ(a, b);
         let renamed = raw.get(i.0).and_then(|file| file.keys.get(i.1)).is_some_and(|key| key.id != b.key.id);
         if !changed && !renamed && *found == Found::InPlace {
@@ -130,6 +131,11 @@ pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> 
     changes.sort_by_key(|(file, rung, order, _)| (*file, *rung, *order));
     difference.logic = file_changes(&raw, &right, &pairs);
     difference.logic.extend(changes.into_iter().map(|change| LogicChange::Rung(Box::new(change.3))));
+    if setups > 0 {
+        difference.notes.push(format!(
+            "set-ups of {setups} message instructions are on one side only, as rung text holds none: they were not compared"
+        ));
+    }
     if work.cut {
         difference.notes.push(
             "the programs are too large and too different to compare every rung with every other: some changed or \

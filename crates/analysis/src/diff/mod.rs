@@ -43,6 +43,8 @@ pub struct Difference {
     pub renames: Vec<Rename>,
     /// Symbols, descriptions, comments, page titles.
     pub documentation: Vec<Change>,
+    /// A side came without documentation: nothing is known of differences in it.
+    pub documentation_left_out: bool,
     /// Contents of data files, and forces.
     pub values: Vec<ValueChange>,
     /// Processor, I/O, channels, shape of data files, names of program files.
@@ -208,7 +210,10 @@ pub fn compare(old: Side<'_>, new: Side<'_>) -> Difference {
         (Some(a), Some(b)) => {
             difference.documentation = documentation::compare((old.image, a), (new.image, b), &matched);
         }
-        _ => difference.notes.push("documentation was not compared: an image has none of its own".to_owned()),
+        _ => {
+            difference.documentation_left_out = true;
+            difference.notes.push("documentation was not compared: an image has none of its own".to_owned());
+        }
     }
     difference.values = values::compare(old.image, new.image);
     difference.configuration = configuration::compare(old.image, new.image, &matched);

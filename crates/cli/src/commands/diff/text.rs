@@ -52,7 +52,10 @@ pub fn write(
     if sections.logic {
         writer.logic(programs, difference)?;
     }
-    if sections.documentation {
+    if sections.documentation && difference.documentation_left_out {
+        writer.line(HEAD, "Documentation: not compared")?;
+        writer.plain("")?;
+    } else if sections.documentation {
         writer.section("Documentation", difference.documentation.len())?;
         writer.changes(&difference.documentation)?;
     }
