@@ -12,6 +12,7 @@
 //! * [`diff`]: what differs between two programs.
 //! * [`checks`]: what an experienced engineer would question, with codes.
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
+//! * [`search`]: addresses, instructions with wildcards, texts, regular expressions.
 
 mod budget;
 mod calls;
@@ -21,6 +22,7 @@ pub mod csv;
 pub mod diff;
 mod location;
 pub mod proof;
+pub mod search;
 mod space;
 mod timers;
 mod xref;

@@ -48,6 +48,14 @@ pub enum Command {
                             comments that take findings out: docs/checks.md."
     )]
     Check(CheckArguments),
+    /// Search: address, symbol, text, instruction with wildcards, regular expression; rungs drawn
+    #[command(
+        after_help = "Example: rungs search O:2/5 conveyor.RSS\n         rungs search 'TON * 0.01 >=500 *' plant/\n         \
+                            rungs search 'jam detected' conveyor.RSS\n         rungs search --regex '^XI[CO] B3:' conveyor.RSS\n\n\
+                            A mnemonic first makes it a pattern: one word per operand, * and ? for any characters, >= <= > < = != for \
+                            numbers, operands left out can be anything. Exit code 0: found; 1: not found; 2: bad use; 3: unreadable."
+    )]
+    Search(SearchArguments),
     /// Lossless check: bytes understood, byte-identical rewrite, compiled code agrees with operands
     #[command(after_help = "Example: rungs verify conveyor.RSS\n         rungs verify --json archive/ > verify.jsonl")]
     Verify(VerifyArguments),
@@ -248,6 +256,24 @@ pub enum CheckLevel {
     /// Worth knowing
     #[default]
     Note,
+}
+
+#[derive(Args)]
+pub struct SearchArguments {
+    /// What to search for
+    #[arg(value_name = "PATTERN")]
+    pub pattern: String,
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// The pattern is a regular expression, over instructions, symbols, descriptions and comments
+    #[arg(long)]
+    pub regex: bool,
+    /// Do not draw rungs
+    #[arg(long)]
+    pub no_draw: bool,
+    #[command(flatten)]
+    pub input: Input,
 }
 
 #[derive(Args)]

@@ -1,4 +1,4 @@
-//! `rungs check` as a user runs it: exit codes, text, JSON, suppression.
+//! `rungs check` and `rungs search` as a user runs them: exit codes, text, JSON, suppression.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -63,4 +63,28 @@ fn json_suppression_and_exit_codes() {
     assert_eq!(rungs(&["check", name, "--only", "NONE"]).status.code(), Some(2));
     let missing = path.with_file_name("missing.RSS");
     assert_eq!(rungs(&["check", missing.to_str().expect("a path")]).status.code(), Some(3));
+}
+
+#[test]
+fn search_finds_addresses_patterns_and_expressions() {
+    let path = project("search", "SOR XIC B3:0/0 TON T4:0 0.01 500 0 EOR\nSOR XIC B3:0/0 TON T4:1 0.01 499 0 EOR");
+    let name = path.to_str().expect("a path");
+    let found = |arguments: &[&str]| {
+        let mut all = vec!["search", "--no-draw"];
+        all.extend(arguments);
+        let output = rungs(&all);
+        (output.status.code(), text(&output).lines().filter(|line| line.trim_start().starts_with("2:")).count())
+    };
+    assert_eq!(found(&["B3/0", name]), (Some(0), 2));
+    assert_eq!(found(&["TON * 0.01 >=500 *", name]), (Some(0), 1));
+    assert_eq!(found(&["ton T4:? .01 <500", name]), (Some(0), 1));
+    assert_eq!(found(&["TON * 1.0", name]), (Some(1), 0));
+    assert_eq!(found(&["T4:1", name]), (Some(0), 1));
+    assert_eq!(found(&["--regex", "^ton t4:[01] ", name]), (Some(0), 2));
+    assert_eq!(found(&["no such text", name]), (Some(1), 0));
+    assert_eq!(found(&["--regex", "(", name]), (Some(2), 0));
+    let shown = text(&rungs(&["search", "TON T4:0", name]));
+    assert!(shown.contains("Timer On Delay"), "{shown}");
+    let document: Value = serde_json::from_str(text(&rungs(&["search", "--json", "T4:0", name])).trim()).expect("JSON");
+    assert_eq!((&document["hits"][0]["kind"], &document["hits"][0]["rung"]["rung"]), (&"read/write".into(), &0.into()));
 }

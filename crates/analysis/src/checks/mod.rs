@@ -21,7 +21,7 @@ mod timers;
 use ladder::{Documentation, Image};
 
 use crate::location::Location;
-pub(crate) use context::Context;
+pub(crate) use context::{Context, form as context_form};
 pub use suppress::{Rule, Rules};
 
 /// How much a finding matters.

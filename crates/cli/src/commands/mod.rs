@@ -12,6 +12,7 @@ mod junit;
 mod migrate;
 mod prove;
 mod run;
+mod search;
 mod show;
 mod test;
 mod timers;
@@ -40,6 +41,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Timers(arguments) => timers::run(&arguments),
         Command::Xref(arguments) => xref::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Search(arguments) => search::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
