@@ -98,7 +98,7 @@ pub(super) fn one_sided_setups(old: Half<'_>, new: Half<'_>) -> usize {
 /// least one side.
 pub(super) fn values_differ(old: Half<'_>, new: Half<'_>) -> bool {
     let mut setups = old.rung.instructions().zip(new.rung.instructions());
-    if setups.any(|(a, b)| matches!((&a.message, &b.message), (Some(a), Some(b)) if a != b)) {
+    if setups.any(|(a, b)| !settings((0, a), (0, b)).is_empty()) {
         return true;
     }
     let open = |rung: &Rung| rung.instructions().any(|instruction| !instruction.compiled);
@@ -288,7 +288,8 @@ fn settings(old: (u32, &ladder::Instruction), new: (u32, &ladder::Instruction)) 
     names.extend(b.iter().map(|setting| &*setting.0).filter(|name| value(a, name).is_none()));
     let differing = names.into_iter().filter_map(|name| {
         let (old, new) = (value(a, name), value(b, name));
-        (old != new).then(|| (name, old.unwrap_or_default(), new.unwrap_or_default()))
+        // The flags of the last message, as they stood when the project was saved.
+        (old != new && name != "Status").then(|| (name, old.unwrap_or_default(), new.unwrap_or_default()))
     });
     differing
         .map(|(name, before, after)| Edit {
