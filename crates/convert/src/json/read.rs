@@ -122,15 +122,13 @@ fn image(doc: ImageDoc<'_>, path: &Path<'_>) -> Result<Image> {
 
 fn data_files(docs: Vec<DataFileDoc<'_>>, words: &mut usize, path: &Path<'_>) -> Result<Vec<DataFile>> {
     let mut files = Vec::with_capacity(docs.len());
+    let mut seen = HashSet::new();
     for (index, doc) in docs.into_iter().enumerate() {
         let path = path.index(index);
         let file = data_file(doc, &path)?;
         // M0 and M1 are numbered on their own, and so is each kind of function file.
-        let key = |file: &DataFile| {
-            let apart = file.file_type.is_function_file() || matches!(file.file_type, FileType::M0 | FileType::M1);
-            (file.number, apart.then_some(file.file_type))
-        };
-        if files.iter().any(|other| key(other) == key(&file)) {
+        let apart = file.file_type.is_function_file() || matches!(file.file_type, FileType::M0 | FileType::M1);
+        if !seen.insert((file.number, apart.then_some(file.file_type))) {
             return Err(path.member("number").error("each file once", format!("another file {}", file.number)));
         }
         if !limits::admit_words(words, file.words.len()) {
