@@ -77,7 +77,9 @@ fn symbol(labels: &[(Role, String)], sign: &Sign, above: &str, below: &[(Role, S
         Sign::Coil(letters) => (2 + letters.len().max(1), Shape::Coil((*letters).to_owned())),
         Sign::Marked(letters) => (2 + letters.len(), Shape::Marked((*letters).to_owned())),
     };
-    let needed = widest(&labels).max(widest(&address)).max(widest(&below)).max(SYMBOL_MIN);
+    let texts = widest(&labels).max(widest(&address)).max(widest(&below));
+    // A name in the sign can be wider than the operand above it.
+    let needed = texts.max(sign_width).max(SYMBOL_MIN);
     // An odd width gives an odd sign a middle.
     let inner = (needed + usize::from((needed ^ sign_width) & 1 == 1)).min(room.max(needed));
 

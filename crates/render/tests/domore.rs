@@ -109,3 +109,19 @@ fn narrow_and_ascii() {
     let text: String = (3..5).map(|index| render::domore::rung(block, index, &documentation, &style)).collect();
     insta::assert_snapshot!(text);
 }
+
+/// The sign of an instruction can be wider than its operand.
+#[test]
+fn every_instruction_is_drawn_over_a_short_operand() {
+    for entry in domore::instruction::TABLE {
+        let operands = "\tA".repeat(entry.operands.len().max(1));
+        let text = format!("PLC DM-SIM\n$PRGRM $Main\n\nSTR C0\n{}{operands}\n\n$PGMEND $Main\n", entry.mnemonic);
+        let reading = read(&text).expect("readable");
+        let documentation = Documentation::new(&reading.project);
+        let block = reading.project.code_block("$Main").expect("block");
+        let drawn: String = (0..block.rungs.len())
+            .map(|index| render::domore::rung(block, index, &documentation, &Style::default()))
+            .collect();
+        assert!(drawn.contains('A'), "{}: {drawn}", entry.mnemonic);
+    }
+}
