@@ -1,5 +1,5 @@
 //! Every project of the corpus migrated: how many rungs hold, and that every result reads back, balances
-//! and compiles.
+//! and compiles, with no `STR` behind an output.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,6 +53,8 @@ fn rungs_hold() {
         let took = before.elapsed();
         let rungs = project.main.ladder_files().flat_map(|file| &file.rungs).filter(|rung| !rung.is_end()).count();
         assert_eq!(migration.rungs.len(), rungs, "{name}: a rung is lost");
+        let behind = migrate_support::pushes_behind_outputs(&migration.project);
+        assert!(behind.is_empty(), "{name}: STR behind an output: {behind:#?}");
         let text = domore::text::write(&migration.project);
         let reading = domore::text::read(&text).expect("text");
         assert!(reading.diagnostics.is_empty(), "{name}: {:?}", reading.diagnostics.first());
@@ -158,6 +160,8 @@ fn only_confirmed_forms_are_used_when_asked_for() {
         let Some(project) = read(path) else { continue };
         let options = Options { only_confirmed: true };
         let migration = migrate::migrate(&project.main, &[], &options).expect("it migrates");
+        let behind = migrate_support::pushes_behind_outputs(&migration.project);
+        assert!(behind.is_empty(), "STR behind an output: {behind:#?}");
         rungs += migration.rungs.len();
         persons += migration.count(Verdict::Person);
         for form in migrate::forms::unconfirmed(&migration.project) {

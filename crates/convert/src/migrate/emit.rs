@@ -4,11 +4,11 @@
 //! An instruction's conversion appends to the rung, leaves the power flow it hands on at the top, and
 //! may use more of the stack in between ([`Emitter::when`]).
 //!
-//! A `STR` directly behind an output would begin a new rung. [`Emitter`] never lets that happen: it
-//! puts a contact that is always on between the two.
+//! A `STR` directly behind an output would begin a new rung. [`Emitter::finish`] never lets that happen:
+//! it puts a contact that is always on between the two.
 
 use domore::Instruction;
-use domore::instruction::{Entry, by_mnemonic};
+use domore::instruction::{Effect, Entry, Join as Joining, by_mnemonic};
 
 /// A relation of two values, as contacts spell it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +98,12 @@ fn is_output(instruction: &Instruction) -> bool {
     by_mnemonic(&instruction.mnemonic).is_none_or(Entry::is_output)
 }
 
+/// A contact that pushes: the `STR` family.
+fn is_push(instruction: &Instruction) -> bool {
+    by_mnemonic(&instruction.mnemonic)
+        .is_some_and(|entry| matches!(entry.effect, Effect::Contact { join: Joining::Push, .. }))
+}
+
 /// A rung being built.
 #[derive(Clone, Debug, Default)]
 pub struct Emitter {
@@ -139,7 +145,20 @@ impl Emitter {
         if self.code.is_empty() {
             self.code.push(Instruction::new("NOP", [""; 0]));
         }
+        self.separate();
         self.code
+    }
+
+    /// Puts a contact that is always ON between an output and a push behind it. Only the rung as a whole
+    /// shows where that is needed: a branch whose `DUPBOOL` was dropped may begin with a push.
+    fn separate(&mut self) {
+        let code = std::mem::take(&mut self.code);
+        for instruction in code {
+            if is_push(&instruction) && self.code.last().is_some_and(is_output) {
+                self.code.push(Instruction::new("AND", [ALWAYS]));
+            }
+            self.code.push(instruction);
+        }
     }
 
     /// Where the `DUPBOOL` of the last `POPBOOL` stands.
@@ -166,10 +185,6 @@ impl Emitter {
 
     fn push(&mut self, instruction: Instruction) {
         self.code.push(instruction);
-    }
-
-    fn ends_in_output(&self) -> bool {
-        self.code.last().is_some_and(is_output)
     }
 
     /// Power flows on only where the contact passes it.
@@ -211,9 +226,6 @@ impl Emitter {
     /// Pushes a contact of its own: the beginning of a parallel group. Join it with
     /// [`Emitter::join_or`] or [`Emitter::join_and`].
     pub fn store(&mut self, contact: &Contact) {
-        if self.ends_in_output() {
-            self.push(Instruction::new("AND", [ALWAYS]));
-        }
         self.push(contact.instruction(Join::Push));
         self.depth += 1;
     }
@@ -365,5 +377,18 @@ mod tests {
         e.join_and();
         e.out("Y1");
         assert_eq!(text(e), "STR ST1; OUT Y0; AND ST1; STR X1; OR X2; ANDSTR; OUT Y1");
+    }
+    #[test]
+    fn a_last_branch_that_begins_with_a_group_is_kept_in_the_rung() {
+        let mut e = Emitter::new();
+        e.and("X0");
+        e.when(|e| e.out("Y0"));
+        e.when(|e| {
+            e.store(&Contact::Compare(Relation::Equal, "N1".into(), "2".into()));
+            e.or(&Contact::On("X2".into()));
+            e.join_and();
+            e.out("Y1");
+        });
+        assert_eq!(text(e), "STR X0; OUT Y0; AND ST1; STRE N1 2; OR X2; ANDSTR; OUT Y1");
     }
 }

@@ -63,6 +63,8 @@ impl Both {
 
     /// Both sides of a migration; why one of them does not run.
     pub(crate) fn with(image: &Image, migration: Migration) -> Result<Both, String> {
+        let behind = pushes_behind_outputs(&migration.project);
+        assert!(behind.is_empty(), "STR behind an output: {behind:#?}");
         let text = domore::text::write(&migration.project);
         let reading = domore::text::read(&text).expect("the text is read back");
         assert!(reading.diagnostics.is_empty(), "{:?}\n{text}", reading.diagnostics);
@@ -216,6 +218,29 @@ impl Both {
     pub(crate) fn text(&self) -> String {
         domore::text::write(&self.migration.project)
     }
+}
+
+/// Rungs in which an instruction of the `STR` family stands directly behind a coil or box: Designer may
+/// begin a new rung there. An instruction that is not known counts as a box.
+pub(crate) fn pushes_behind_outputs(project: &domore::Project) -> Vec<String> {
+    use domore::instruction::by_mnemonic;
+    let family = ["STR", "STRN", "STRPD", "STRND", "STRDLT", "STRE", "STRNE", "STRGT", "STRGE", "STRLT", "STRLE"];
+    let is_bad = |pair: &[domore::Instruction]| {
+        let [before, next] = pair else { return false };
+        by_mnemonic(&before.mnemonic).is_none_or(|entry| entry.is_output())
+            && family.contains(&next.mnemonic.to_ascii_uppercase().as_str())
+    };
+    let code = project.parts.iter().filter_map(|part| match part {
+        domore::Part::Code(block) => Some(block),
+        _ => None,
+    });
+    code.flat_map(|block| block.rungs.iter().map(move |rung| (block, rung)))
+        .filter(|(_, rung)| rung.instructions.windows(2).any(is_bad))
+        .map(|(block, rung)| {
+            let code: Vec<_> = rung.instructions.iter().map(ToString::to_string).collect();
+            format!("{}: {}", block.name, code.join("; "))
+        })
+        .collect()
 }
 
 /// xorshift64*: the same numbers on every machine.
