@@ -132,6 +132,10 @@ pub const FIXED: &[(&str, &str)] = &[
     ("several OROUT of a bit", "the first of a scan writes it, the others only turn it ON"),
     ("what stands behind a box with several legs", "its top leg is the power flow"),
     ("the square waves ST3 to ST5", "OFF in the first half of their period"),
+    (
+        "inputs that the program itself writes",
+        "they keep what was written until they are set from outside; a controller would read them again before the next scan",
+    ),
     ("the clock", "1 January 2000 when the machine is made, moved by simulated time; Sunday is day 0"),
     ("retention", "blocks with -1 in their fifth column lose their content at power loss, all others keep it"),
     ("IF in MATH", "only the side that is taken is computed"),

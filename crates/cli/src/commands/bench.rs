@@ -1,5 +1,6 @@
 //! `rungs bench`: how fast a program runs here.
 
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
@@ -46,7 +47,7 @@ pub fn run(arguments: &BenchArguments) -> Result<Outcome, Error> {
         Ok(project) => project,
         Err(why) => {
             if arguments.json {
-                println!("{}", json!({"file": name.to_string(), "error": why}));
+                writeln!(std::io::stdout(), "{}", json!({"file": name.to_string(), "error": why}))?;
             }
             eprintln!("{}", printable(&format!("{name}: {why}")));
             return Ok(Outcome::Unreadable);
@@ -132,6 +133,7 @@ fn report(
     let rate = ratio(scans, seconds);
     let nanoseconds = ratio(seconds * 1e9, instructions);
     let name = arguments.program.display().to_string();
+    let mut out = std::io::stdout().lock();
     if arguments.json {
         let document = json!({
             "file": name,
@@ -146,16 +148,16 @@ fn report(
             "stopped": measured.stopped,
             "approximations": approximations,
         });
-        println!("{document}");
+        writeln!(out, "{document}")?;
     } else {
         let show =
             |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
-        println!("{}", printable(&format!("{name}: {family}")));
-        println!("  scans                {} in {seconds:.3} s", measured.scans);
-        println!("  simulated time       {:.3} s", measured.simulated.as_secs_f64());
-        println!("  instructions / scan  {}", show(per_scan, 1));
-        println!("  scans / second       {}", show(rate, 0));
-        println!("  ns / instruction     {}", show(nanoseconds, 2));
+        writeln!(out, "{}", printable(&format!("{name}: {family}")))?;
+        writeln!(out, "  scans                {} in {seconds:.3} s", measured.scans)?;
+        writeln!(out, "  simulated time       {:.3} s", measured.simulated.as_secs_f64())?;
+        writeln!(out, "  instructions / scan  {}", show(per_scan, 1))?;
+        writeln!(out, "  scans / second       {}", show(rate, 0))?;
+        writeln!(out, "  ns / instruction     {}", show(nanoseconds, 2))?;
         for line in approximations {
             eprintln!("{}", printable(&format!("{name}: approximate: {line}")));
         }

@@ -1,5 +1,6 @@
 //! `rungs build`: text to project.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use ladder::{Project, Severity};
@@ -36,13 +37,14 @@ pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
     let bytes = built.file.write().map_err(wrong)?;
     report(output, &built.notes);
     std::fs::write(output, &bytes).map_err(|error| Error::Use(format!("{}: {error}", output.display())))?;
-    println!(
+    writeln!(
+        std::io::stdout(),
         "{}: {} bytes, {} ladder files, {} rungs",
         output.display(),
         bytes.len(),
         project.main.ladder_files().count(),
         project.main.ladder_files().map(|file| file.rungs.len()).sum::<usize>()
-    );
+    )?;
     Ok(Outcome::Done)
 }
 

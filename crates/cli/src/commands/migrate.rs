@@ -1,5 +1,6 @@
 //! `rungs migrate`: a program for another controller, with a report.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use analysis::proof::{self, RungFate};
@@ -66,7 +67,7 @@ pub fn run(arguments: &MigrateArguments) -> Result<Outcome, Error> {
     }
     std::fs::write(&names.json, report.json())?;
     std::fs::write(&names.html, report.html())?;
-    print(arguments, &report, &migration, &names);
+    print(arguments, &report, &migration, &names)?;
     Ok(outcome)
 }
 
@@ -159,36 +160,35 @@ fn row(line: &str) -> (String, String) {
     }
 }
 
-fn print(arguments: &MigrateArguments, report: &Report, migration: &Migration, names: &Names) {
+fn print(arguments: &MigrateArguments, report: &Report, migration: &Migration, names: &Names) -> Result<(), Error> {
+    let mut out = std::io::stdout().lock();
     if arguments.json {
-        println!(
-            "{}",
-            serde_json::json!({"file": arguments.file.display().to_string(), "counts": report.counts,
-            "unconfirmed": report.unconfirmed, "notes": report.notes, "marks": report.marks, "proof": report.proof})
-        );
-        return;
+        let document = serde_json::json!({"file": arguments.file.display().to_string(), "counts": report.counts,
+            "unconfirmed": report.unconfirmed, "notes": report.notes, "marks": report.marks, "proof": report.proof});
+        return Ok(writeln!(out, "{document}")?);
     }
     let counts = report.counts;
-    println!("{}", printable(&arguments.file.display().to_string()));
-    println!("  {:6} rungs", counts.rungs);
-    println!("  {:6} converted exactly", counts.exact);
-    println!("  {:6} converted with a stated condition", counts.condition);
-    println!("  {:6} need a person", counts.person);
+    writeln!(out, "{}", printable(&arguments.file.display().to_string()))?;
+    writeln!(out, "  {:6} rungs", counts.rungs)?;
+    writeln!(out, "  {:6} converted exactly", counts.exact)?;
+    writeln!(out, "  {:6} converted with a stated condition", counts.condition)?;
+    writeln!(out, "  {:6} need a person", counts.person)?;
     for rung in migration.rungs.iter().filter(|rung| rung.verdict == Verdict::Person) {
         for note in &rung.notes {
-            println!("         {}:{}  {}", rung.file, rung.rung, printable(&note.to_string()));
+            writeln!(out, "         {}:{}  {}", rung.file, rung.rung, printable(&note.to_string()))?;
         }
     }
     for note in &migration.notes {
-        println!("  {}", printable(&note.to_string()));
+        writeln!(out, "  {}", printable(&note.to_string()))?;
     }
     if !report.unconfirmed.is_empty() {
-        println!("  {} forms were never checked against Designer, see the report", report.unconfirmed.len());
+        writeln!(out, "  {} forms were never checked against Designer, see the report", report.unconfirmed.len())?;
     }
     for (name, value) in report.proof.iter().flatten() {
-        println!("  {}", printable(&format!("{name}  {value}")));
+        writeln!(out, "  {}", printable(&format!("{name}  {value}")))?;
     }
     for path in names.all() {
-        println!("  {}", printable(&path.display().to_string()));
+        writeln!(out, "  {}", printable(&path.display().to_string()))?;
     }
+    Ok(())
 }
