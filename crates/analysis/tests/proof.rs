@@ -136,10 +136,16 @@ fn a_stop_of_one_side_is_a_difference() {
 fn converted_programs_are_compared_by_their_map() {
     let image = program(&BASE);
     let (project, map) = migrated(&image);
+    let options = |scans| Options { without_marks: true, ..options(scans) };
     let report = prove_domore(&image, &project, &map, None, &options(20_000));
     assert_eq!(report.verdict(), Verdict::NoDifference, "{report}");
     assert!(report.other_coverage.all > 0);
     assert!(report.notes.iter().any(|note| note.contains("missing rung")));
+    assert!(report.to_string().lines().next().is_some_and(|line| line.contains("was not checked")), "{report}");
+    // Unless that is asked for, a text without marks cannot be compared.
+    let report = prove_domore(&image, &project, &map, None, &Options { without_marks: false, ..options(2_000) });
+    assert_eq!(report.verdict(), Verdict::NotComparable, "{report}");
+    assert!(report.incomparable.iter().any(|why| why.contains("no rung marks")), "{report}");
 
     // Without a row for the output nothing can be said of it.
     let partial: Vec<Mapping> = map.iter().filter(|row| !row.original.starts_with("O:")).cloned().collect();
@@ -219,4 +225,43 @@ fn proven_programs_stay_proven() {
         println!("{}: {} conditions {}", program.name, report.verdict().as_str(), report.conditions_covered());
         assert_eq!(report.verdict(), Verdict::NoDifference, "{}: {report}", program.name);
     }
+}
+
+#[test]
+fn a_rung_emptied_under_its_mark_is_a_difference() {
+    let image = program(&BASE);
+    let (mut project, map) = migrated(&image);
+    let marks = analysis::proof::fates(&project).expect("marks");
+    let marked = |rung: &domore::Rung| {
+        rung.comment.iter().flat_map(|comment| &comment.lines).any(|line| line.starts_with("SLC 2:2 "))
+    };
+    let blocks = project.parts.iter_mut().filter_map(|part| match part {
+        domore::Part::Code(block) => Some(block),
+        _ => None,
+    });
+    for rung in blocks.flat_map(|block| &mut block.rungs).filter(|rung| marked(rung)) {
+        rung.instructions = vec![domore::Instruction::new("NOP", [""; 0])];
+    }
+    // One scan does not show it in behaviour.
+    let report = prove_domore(&image, &project, &map, Some(&marks), &options(1));
+    assert!(report.found.is_none(), "{report}");
+    assert_eq!(report.verdict(), Verdict::Different, "{report}");
+    assert!(matches!(report.missing_rungs.as_slice(), [one] if one.starts_with("2:2")), "{report}");
+    // One that is left to a person is said to be empty.
+    let person = |mut fate: RungFate| {
+        fate.person = (fate.rung == 2).then(|| "because".to_owned());
+        fate
+    };
+    let persons: Vec<RungFate> = marks.into_iter().map(person).collect();
+    let report = prove_domore(&image, &project, &map, Some(&persons), &options(1_000));
+    assert_eq!(report.verdict(), Verdict::NotComparable, "{report}");
+}
+
+#[test]
+fn no_scan_compares_nothing() {
+    let image = program(&BASE);
+    let report = prove_slc(&image, &image, None, &options(0));
+    assert_eq!((report.verdict(), report.scans), (Verdict::NotComparable, 0), "{report}");
+    let text = report.to_string();
+    assert!(text.contains("nothing compared") && !text.contains("100.0 %") && !text.contains("0 of 0"), "{text}");
 }

@@ -458,6 +458,10 @@ pub struct ProveArguments {
     /// The address map `rungs migrate` wrote; between two SLC programs every address means itself without one
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
+    /// Compare Do-more text whose rungs do not say which one of the original they were made from (`SLC 2:0`): a
+    /// rung that went missing then shows in behaviour only
+    #[arg(long)]
+    pub no_marks: bool,
     /// Scans of both programs
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     pub scans: u64,

@@ -102,8 +102,38 @@ fn a_migrated_program_is_proven_by_its_map() {
     let output = rungs(&arguments);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
 
-    // A rung less: its mark is missed whatever it does.
+    // Rows that place nothing are refused by their number; helpers are none of the data.
+    let rows = std::fs::read_to_string(&map).expect("text");
+    for row in ["O:0.0/1,,,BOGUS7,,", "N7:0,N7:0,1,N5000000,,", "O:0.0/1,,,,,", "O:0.0/1,,,N5,,", "nonsense,,1,N5,,"] {
+        std::fs::write(&map, format!("{rows}helper,,,BOGUS7,,\r\n{row}\r\n")).expect("written");
+        let output = rungs(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{row}: {}", text(&output.stdout));
+        let number = format!("row {}:", rows.lines().count() + 1);
+        assert!(text(&output.stderr).contains(&number), "{row}: {number} {}", text(&output.stderr));
+    }
+    std::fs::write(&map, format!("{rows}helper,,,BOGUS7,,\r\n")).expect("written");
+    assert_eq!(rungs(&arguments).status.code(), Some(0));
+
+    // No scan, no claim.
+    let output = rungs(&["prove", &motor, path(&program), "--map", path(&map), "--scans", "0"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("\nnothing compared\n"), "{}", text(&output.stdout));
+    assert!(!text(&output.stdout).contains("100.0 %"), "{}", text(&output.stdout));
+
+    // Without marks nobody knows whether a rung is missing.
     let whole = std::fs::read_to_string(&program).expect("text");
+    std::fs::write(&program, whole.replace("SLC 2:", "Rung 2:").replace("SLC 3:", "Rung 3:")).expect("written");
+    let output = rungs(&arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("no rung marks"), "{}", text(&output.stdout));
+    let mut unmarked = arguments.to_vec();
+    unmarked.push("--no-marks");
+    let output = rungs(&unmarked);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
+    let first = text(&output.stdout).lines().next().map(str::to_owned).unwrap_or_default();
+    assert!(first.contains("the identity of the rungs was not checked"), "{first}");
+
+    // A rung less: its mark is missed whatever it does.
     let start = whole.find("SLC 2:1 ").and_then(|at| whole[..at].rfind("#BEGIN")).expect("a mark");
     let end = whole.find("SLC 2:2 ").and_then(|at| whole[..at].rfind("#BEGIN")).expect("a mark");
     std::fs::write(&program, format!("{}{}", &whole[..start], &whole[end..])).expect("written");

@@ -146,6 +146,9 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     /// Runs until the scans are used up or a difference is found.
     pub(crate) fn run(&mut self) {
+        if !self.open() {
+            return;
+        }
         enter(&mut self.both);
         // Initial values are stored in the first scan: data is not touched before it.
         self.scan(false, 0);

@@ -1,29 +1,69 @@
 //! What a converted program says about the rungs it was made from.
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use domore::instruction::Effect;
+use ladder::Image;
+
 use super::RungFate;
 
 /// Reads the comments a migration leaves above each rung (`SLC 2:14  XIC ...`, `condition: ...`,
 /// `person: ...`). `None`: no rung says where it comes from.
 pub fn fates(project: &domore::Project) -> Option<Vec<RungFate>> {
-    let mut fates = Vec::new();
-    for rung in project.code_blocks().flat_map(|block| &block.rungs) {
-        let lines = rung.comment.iter().flat_map(|comment| &comment.lines);
-        let (mut place, mut person, mut conditions) = (None, None, Vec::new());
-        for line in lines {
-            if let Some(reason) = line.strip_prefix("person: ") {
-                person = Some(reason.to_owned());
-            } else if let Some(condition) = line.strip_prefix("condition: ") {
-                conditions.push(condition.to_owned());
-            } else if let Some(found) = origin(line) {
-                // The mark is the last line of a comment: what a person wrote above it does not count.
-                place = Some(found);
-            }
-        }
-        if let Some((file, rung)) = place {
-            fates.push(RungFate { file, rung, person, conditions });
+    let rungs = project.code_blocks().flat_map(|block| &block.rungs);
+    let fates: Vec<RungFate> = rungs.filter_map(fate).collect();
+    (!fates.is_empty()).then_some(fates)
+}
+
+fn fate(rung: &domore::Rung) -> Option<RungFate> {
+    let lines = rung.comment.iter().flat_map(|comment| &comment.lines);
+    let (mut place, mut person, mut conditions) = (None, None, Vec::new());
+    for line in lines {
+        if let Some(reason) = line.strip_prefix("person: ") {
+            person = Some(reason.to_owned());
+        } else if let Some(condition) = line.strip_prefix("condition: ") {
+            conditions.push(condition.to_owned());
+        } else if let Some(found) = origin(line) {
+            // The mark is the last line of a comment: what a person wrote above it does not count.
+            place = Some(found);
         }
     }
-    (!fates.is_empty()).then_some(fates)
+    place.map(|(file, rung)| RungFate { file, rung, person, conditions })
+}
+
+/// Rungs of the original that have an output and whose mark stands above rungs without any: program file
+/// and rung. Those left to a person, of `persons` or by their comment, are said to be empty already.
+pub(crate) fn emptied(image: &Image, project: &domore::Project, persons: &BTreeSet<(u16, u32)>) -> Vec<(u16, u32)> {
+    let mut acts: BTreeMap<(u16, u32), bool> = BTreeMap::new();
+    for rung in project.code_blocks().flat_map(|block| &block.rungs) {
+        if let Some(found) = fate(rung).filter(|found| found.person.is_none()) {
+            *acts.entry((found.file, found.rung)).or_default() |= rung.instructions.iter().any(acting);
+        }
+    }
+    let empty = |place: &(u16, u32)| acts.get(place) == Some(&false) && !persons.contains(place);
+    let mut output: BTreeSet<(u16, u32)> = BTreeSet::new();
+    let mut other: BTreeSet<(u16, u32)> = BTreeSet::new();
+    for (location, it) in crate::instructions(image) {
+        let (name, place) = (it.mnemonic.name().unwrap_or_default(), (location.file, location.rung));
+        let known = instr::by_mnemonic(name);
+        if known.is_some_and(|known| known.forms.iter().any(|form| form.position == instr::Position::Output)) {
+            output.insert(place);
+        }
+        if !PLACED.contains(&name) {
+            other.insert(place);
+        }
+    }
+    output.intersection(&other).copied().filter(empty).collect()
+}
+
+/// Flow that a conversion expresses by where the rungs stand. A rung of nothing else, without a condition,
+/// becomes one that does nothing.
+const PLACED: [&str; 5] = ["JSR", "RET", "MCR", "SBR", "LBL"];
+
+/// Everything but contacts, what only moves the power flow, and `NOP`. What is not known may act.
+fn acting(instruction: &domore::Instruction) -> bool {
+    let entry = domore::instruction::by_mnemonic(&instruction.mnemonic);
+    entry.is_none_or(|entry| entry.mnemonic != "NOP" && (entry.is_output() || entry.effect == Effect::Alone))
 }
 
 /// `SLC 2:14  ...`.

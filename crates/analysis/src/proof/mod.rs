@@ -10,6 +10,7 @@
 //! mapped, not converted or never reached is listed and never counts as equal.
 
 mod campaign;
+mod check;
 mod fates;
 mod goals;
 mod inputs;
@@ -37,6 +38,7 @@ use scenario::Preset;
 use solve::Solver;
 
 pub use campaign::Difference;
+pub use check::{refused_domore, refused_slc};
 pub use fates::fates;
 pub use goals::{Goal, GoalKind};
 pub use pairs::{Mapping, Mismatch};
@@ -51,6 +53,9 @@ pub struct Options {
     pub scans: u64,
     /// Where the random sequence starts. The same seed gives the same run on any machine.
     pub seed: u64,
+    /// Compare a converted program although its text does not say which rung was made from which. The report
+    /// then says with its verdict that the identity of the rungs was not checked.
+    pub without_marks: bool,
     /// Look for the shortest way to a difference that was found.
     pub minimize: bool,
     /// How scenarios name the original.
@@ -68,6 +73,7 @@ impl Default for Options {
         Options {
             scans: 100_000,
             seed: 1,
+            without_marks: false,
             minimize: true,
             original: Named::default(),
             other: Named { family: Some("do-more".to_owned()), ..Named::default() },
@@ -111,7 +117,8 @@ pub fn prove_slc(original: &Image, other: &Image, map: Option<&[Mapping]>, optio
 
 /// Compares an SLC 500 or MicroLogix program with a Do-more program. `fates` is what the migration says of
 /// each rung of the original (see [`fates()`] for one that is read from its text); without it a rung that went
-/// missing can be seen in behaviour only, and the report says so.
+/// missing can be seen in behaviour only, and the programs are not comparable unless
+/// [`Options::without_marks`] asks for that.
 pub fn prove_domore(
     original: &Image,
     other: &domore::Project,
@@ -130,9 +137,20 @@ pub fn prove_domore(
     };
     let approximations = approximations(program.approximations().iter().map(ToString::to_string));
     let mut report = prove(original, a, DoMore::new(program), approximations, map, fates, options);
+    let persons = fates.unwrap_or_default().iter().filter(|fate| fate.person.is_some());
+    let persons = persons.map(|fate| (fate.file, fate.rung)).collect();
+    let emptied = fates::emptied(original, other, &persons);
+    let empty = |(file, rung)| format!("{file}:{rung}: nothing that acts stands under its mark");
+    report.missing_rungs.extend(emptied.into_iter().map(empty));
     if fates.is_none() {
         let why = "which rung came from which is not known: a missing rung shows in behaviour only";
-        report.notes.push(why.to_owned());
+        if options.without_marks {
+            report.identity_unchecked = true;
+            report.notes.push(why.to_owned());
+        } else {
+            let why = format!("the text of the other program carries no rung marks (`SLC 2:0  ...`): {why}");
+            report.incomparable.push(why);
+        }
     }
     report
 }

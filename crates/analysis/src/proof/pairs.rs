@@ -470,7 +470,7 @@ fn named_bits(xref: &CrossReference<'_>, a: &Slc) -> BTreeMap<u32, u16> {
 }
 
 /// The element `index` behind the one a text names: `ST9:0` and 2 give `ST9:2`, `SL4` and 1 give `SL5`.
-fn advance(text: &str, index: u32) -> Option<String> {
+pub(crate) fn advance(text: &str, index: u32) -> Option<String> {
     let digits = text.bytes().rev().take_while(u8::is_ascii_digit).count();
     let (head, number) = text.split_at(text.len() - digits);
     let number = number.parse::<u32>().ok()?.checked_add(index)?;
@@ -513,7 +513,7 @@ fn spell_slc(first: &Address, size: u32, word: u32, bit: Option<u16>) -> Option<
     })
 }
 
-fn spell_domore(first: &str, word: u32, bit: Option<u16>, kind: Kind) -> Option<String> {
+pub(crate) fn spell_domore(first: &str, word: u32, bit: Option<u16>, kind: Kind) -> Option<String> {
     let digits = first.bytes().rev().take_while(u8::is_ascii_digit).count();
     let (block, number) = first.split_at(first.len() - digits);
     let number: u32 = number.parse().ok()?;

@@ -43,15 +43,18 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Percent; 100 where there is nothing to reach.
+    /// Percent; 100 where there is nothing to reach, which says nothing where nothing was compared either.
     pub fn percent(self) -> f64 {
         if self.all == 0 { 100.0 } else { 100.0 * self.reached as f64 / self.all as f64 }
     }
 }
 
 impl fmt::Display for Coverage {
-    /// `38 of 40 (95.0 %)`, cut, never rounded up.
+    /// `38 of 40 (95.0 %)`, cut, never rounded up; no percentage of nothing.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.all == 0 {
+            return f.write_str("0 of 0");
+        }
         write!(f, "{} of {} ({:.1} %)", self.reached, self.all, (self.percent() * 10.0).floor() / 10.0)
     }
 }
@@ -104,7 +107,9 @@ pub struct Report {
     pub found: Option<(Difference, Counterexample)>,
     /// Why parts, or the whole, cannot be compared.
     pub incomparable: Vec<String>,
-    /// Rungs of the original that the migration does not mention.
+    /// Which rung came from which was not checked, as [`Options::without_marks`] asked for.
+    pub identity_unchecked: bool,
+    /// Rungs of the original that the migration does not mention, or that have nothing in their place.
     pub missing_rungs: Vec<String>,
     /// Rungs left to a person, with the reason.
     pub persons: Vec<String>,
@@ -144,6 +149,7 @@ impl Report {
             other_missing: Vec::new(),
             found: None,
             incomparable: Vec::new(),
+            identity_unchecked: false,
             missing_rungs: Vec::new(),
             persons: Vec::new(),
             conditions: Vec::new(),
@@ -182,7 +188,12 @@ impl Report {
         self.other_missing.dedup();
         self.goals.clone_from(&campaign.goals.all);
         if self.scans < 2 && campaign.found.is_none() {
-            self.incomparable.push("the original stops in its first scan".to_owned());
+            let why = match (self.scans, campaign.both.a.stopped()) {
+                (0, _) => "no scan was asked for: nothing was compared",
+                (_, Some(_)) => "the original stops in its first scan",
+                (_, None) => "one scan only: no input was changed",
+            };
+            self.incomparable.push(why.to_owned());
         }
     }
 
@@ -235,6 +246,34 @@ impl Report {
         rungs.into_values().collect()
     }
 
+    /// The verdict with what must be known to read it.
+    fn headline(&self) -> String {
+        let mut line = self.verdict().as_str().to_owned();
+        if self.identity_unchecked {
+            line.push_str("; the identity of the rungs was not checked");
+        }
+        line
+    }
+
+    fn coverage_lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} inputs changed, {} words compared after every scan", self.inputs, self.compared)?;
+        let kinds: [(&str, Of); 4] = [
+            ("rung conditions", GoalKind::is_rung_condition),
+            ("  of these outputs with and without power", |kind| matches!(kind, GoalKind::True | GoalKind::False)),
+            ("timers and counters done and not done", |kind| matches!(kind, GoalKind::Done | GoalKind::NotDone)),
+            ("comparisons at, below and above their boundary", |kind| {
+                matches!(kind, GoalKind::Equal | GoalKind::JustBelow | GoalKind::JustAbove)
+            }),
+        ];
+        for (title, of) in kinds {
+            writeln!(f, "{title}: {} reached", self.coverage(of))?;
+        }
+        if self.other_coverage.all > 0 {
+            writeln!(f, "contacts and outputs of the other program, on and off: {} seen", self.other_coverage)?;
+        }
+        Ok(())
+    }
+
     /// Goals that cannot be reached by argument, with the argument.
     pub fn impossible_goals(&self) -> impl Iterator<Item = &Goal> {
         self.goals.iter().filter(|goal| !goal.reached && goal.impossible.is_some())
@@ -250,7 +289,7 @@ const LISTED: usize = 40;
 impl fmt::Display for Report {
     /// The report as text, the verdict first.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.verdict().as_str())?;
+        writeln!(f, "{}", self.headline())?;
         if let Some((_, example)) = &self.found {
             writeln!(f, "  {}", example.what)?;
             writeln!(f, "  after {} scans with {} changes of inputs", example.scans, example.changes)?;
@@ -264,20 +303,10 @@ impl fmt::Display for Report {
             self.mode_changes,
             self.stops
         )?;
-        writeln!(f, "{} inputs changed, {} words compared after every scan", self.inputs, self.compared)?;
-        let kinds: [(&str, Of); 4] = [
-            ("rung conditions", GoalKind::is_rung_condition),
-            ("  of these outputs with and without power", |kind| matches!(kind, GoalKind::True | GoalKind::False)),
-            ("timers and counters done and not done", |kind| matches!(kind, GoalKind::Done | GoalKind::NotDone)),
-            ("comparisons at, below and above their boundary", |kind| {
-                matches!(kind, GoalKind::Equal | GoalKind::JustBelow | GoalKind::JustAbove)
-            }),
-        ];
-        for (title, of) in kinds {
-            writeln!(f, "{title}: {} reached", self.coverage(of))?;
-        }
-        if self.other_coverage.all > 0 {
-            writeln!(f, "contacts and outputs of the other program, on and off: {} seen", self.other_coverage)?;
+        if self.scans == 0 {
+            writeln!(f, "nothing compared")?;
+        } else {
+            self.coverage_lines(f)?;
         }
         list(f, "cannot be compared", &self.incomparable)?;
         list(f, "rungs of the original that the other program does not have", &self.missing_rungs)?;

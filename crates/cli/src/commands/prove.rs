@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use analysis::proof::{
     Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Report, Verdict, fates, prove_domore, prove_slc,
+    refused_domore, refused_slc,
 };
 use convert::AnyProject;
 use convert::migrate::map_file::{self, MapRow};
@@ -43,12 +44,23 @@ pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
     let mut options = Options {
         scans: arguments.scans,
         seed: arguments.seed,
+        without_marks: arguments.no_marks,
         choices: arguments.simulation.choices(),
         domore_choices: arguments.simulation.do_more(),
         original: Named { program: beside(&arguments.original, &folder), family: None },
         ..Options::default()
     };
     options.other.program = beside(&arguments.other, &folder);
+    let (numbers, map): (Vec<usize>, Option<Vec<Mapping>>) = match map {
+        Some(rows) => {
+            let (numbers, map): (Vec<usize>, Vec<Mapping>) = rows.into_iter().unzip();
+            (numbers, Some(map))
+        }
+        None => (Vec::new(), None),
+    };
+    if let (Some(map), Some(path)) = (&map, &arguments.map) {
+        refuse(&original.main, &second, map, &numbers, path, &options)?;
+    }
     let started = std::time::Instant::now();
     let report = match &second {
         AnyProject::Rslogix(other) => {
@@ -109,19 +121,48 @@ fn open(path: &Path) -> Result<AnyProject, String> {
     }
 }
 
-fn mappings(path: &Path) -> Result<Vec<Mapping>, String> {
+/// A row that places nothing would leave its data uncompared without a word.
+fn refuse(
+    original: &ladder::Image,
+    other: &AnyProject,
+    map: &[Mapping],
+    numbers: &[usize],
+    path: &Path,
+    options: &Options,
+) -> Result<(), Error> {
+    let refused = match other {
+        AnyProject::Rslogix(other) => refused_slc(original, &other.main, map, options),
+        AnyProject::Domore(document) => refused_domore(original, &document.project, map, options),
+    };
+    let line = |(index, why): &(usize, String)| {
+        let row = numbers.get(*index).copied().unwrap_or(0);
+        format!("{}: address map, row {row}: {why}", path.display())
+    };
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Use(refused.iter().map(line).collect::<Vec<_>>().join("\n"))),
+    }
+}
+
+/// The rows that place data, each with its number in the file, from 1.
+fn mappings(path: &Path) -> Result<Vec<(usize, Mapping)>, String> {
     let named = |why: String| format!("{}: {why}", path.display());
     let bytes = read_file(path, MOST_MAP).map_err(named)?;
     let text = String::from_utf8(bytes).map_err(|_| named("not UTF-8 text".to_owned()))?;
     let rows = map_file::read(&text).map_err(|error| named(error.to_string()))?;
-    Ok(of_rows(&rows))
+    Ok(numbered(&rows).collect())
 }
 
 /// The rows that place data; helpers have no counterpart in the original.
 pub fn of_rows(rows: &[MapRow]) -> Vec<Mapping> {
-    let placed = rows.iter().filter(|row| !row.slc.is_empty() && !row.slc.starts_with("helper"));
-    let mapping = |row: &MapRow| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() };
-    placed.map(mapping).collect()
+    numbered(rows).map(|(_, mapping)| mapping).collect()
+}
+
+fn numbered(rows: &[MapRow]) -> impl Iterator<Item = (usize, Mapping)> {
+    let placed = (1..).zip(rows).filter(|(_, row)| !row.slc.is_empty() && !row.slc.starts_with("helper"));
+    placed.map(|(number, row)| {
+        (number, Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() })
+    })
 }
 
 /// A path as a scenario in `folder` names it.
@@ -154,7 +195,9 @@ pub fn write(report: &Report, folder: &Path) -> Result<(), Error> {
 
 /// The report as JSON.
 pub fn describe(report: &Report, names: &[String; 2]) -> Value {
-    let coverage = |found: Coverage| json!({"reached": found.reached, "all": found.all, "percent": found.percent()});
+    // No percentage of nothing: a reader would take 100 for all of it.
+    let percent = |found: Coverage| (report.scans > 0).then(|| found.percent());
+    let coverage = |found: Coverage| json!({"reached": found.reached, "all": found.all, "percent": percent(found)});
     let goal = |goal: &Goal| {
         json!({
             "file": goal.location.file, "rung": goal.location.rung, "instruction": goal.location.instruction,
@@ -207,6 +250,7 @@ pub fn describe(report: &Report, names: &[String; 2]) -> Value {
         "impossible": report.impossible_goals().map(goal).collect::<Value>(),
         "difference": found,
         "not_comparable": report.incomparable,
+        "rung_identity_checked": !report.identity_unchecked,
         "missing_rungs": report.missing_rungs,
         "persons": report.persons,
         "conditions": report.conditions,
