@@ -14,6 +14,9 @@
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
 //! * [`search`]: addresses, instructions with wildcards, texts, regular expressions.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod budget;
 mod calls;
 pub mod checks;

@@ -1,5 +1,7 @@
 //! The `rungs` command: arguments in, library call, text or JSON out.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 // A binary has no API: `pub` only says what other modules use.
 #![allow(unreachable_pub)]
 

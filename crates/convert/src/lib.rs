@@ -3,6 +3,9 @@
 //! [`open()`] reads a project of any form. The joints between byte records and the model are here
 //! and nowhere else: `rss` knows no instruction, `ladder` no byte.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 pub mod code;
 mod codes;
 pub mod csv;

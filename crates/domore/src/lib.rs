@@ -7,6 +7,9 @@
 //!
 //! Like every dialect this crate opens no file and reads no clock.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 pub mod address;
 pub mod choices;
 pub mod circuit;

@@ -23,6 +23,9 @@
 //! An operation code is a plain number here; what it looks like in a file is the business of `rss`.
 //! A code that nobody has seen is `None`, never a guess.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 pub mod exec;
 mod families;
 mod model;

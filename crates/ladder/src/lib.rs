@@ -8,6 +8,9 @@
 //! name here, and operands are typed by their spelling alone. `convert` builds the model from files,
 //! `instr` says what a mnemonic means.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod address;
 mod channel;
 mod constant;

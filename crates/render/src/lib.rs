@@ -27,6 +27,9 @@
 //! grid, which any other painter can use; [`rung()`] paints them as text. This crate reads no files and
 //! knows no terminal: width and colour are given in [`Style`]. Rungs of Do-more projects are in [`domore`].
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 pub mod domore;
 mod face;
 mod layout;

@@ -8,6 +8,9 @@
 //! writes the objects of a payload, and one module per stream describes its
 //! records. [`Project`] holds a file together.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 pub mod archive;
 pub mod channel;
 pub mod code;

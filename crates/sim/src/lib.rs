@@ -26,6 +26,9 @@
 //! Nothing is left out silently: what has no faithful execution is refused with its rung
 //! ([`Refusal`]), or runs in an approximation that [`Program::approximations`] names.
 
+// A panic in a reader loses what was read: input must end in a value or a located error.
+#![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
+
 mod access;
 pub mod choices;
 mod compile;
