@@ -1,10 +1,7 @@
 //! What differs inside a rung: instructions and operands.
 
-use ladder::{Image, Operand, Rung};
-
 use super::align::{Work, align, pair_similar};
-use super::keys::{self, Parameter, RungKey, Token, parameters, tokens};
-use super::renames::{Mapping, Replaced};
+use super::language::{Half, Language, Marks, Piece};
 
 /// A difference inside a rung.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,14 +62,6 @@ pub struct Word {
     pub marked: bool,
 }
 
-/// One of the two rungs.
-#[derive(Clone, Copy)]
-pub(super) struct Half<'a> {
-    pub(super) image: &'a Image,
-    pub(super) rung: &'a Rung,
-    pub(super) key: &'a RungKey,
-}
-
 /// Edits and both rungs as words.
 #[derive(Default)]
 pub(super) struct Inside {
@@ -82,56 +71,31 @@ pub(super) struct Inside {
 }
 
 /// The words of a rung that has no counterpart.
-pub(super) fn words(rung: &Rung) -> Vec<Word> {
-    let tokens = tokens(rung);
-    let whole = tokens.iter().map(|_| Marks::default()).collect::<Vec<_>>();
-    words_of(&tokens, &whole)
-}
-
-/// Instructions whose set-up only one of two rungs of equal numbers has: rung text holds none.
-pub(super) fn one_sided_setups(old: Half<'_>, new: Half<'_>) -> usize {
-    let pairs = old.rung.instructions().zip(new.rung.instructions());
-    pairs.filter(|(a, b)| a.message.is_some() != b.message.is_some()).count()
-}
-
-/// Something differs in two rungs of equal numbers: set-ups of messages, or values that are program on at
-/// least one side.
-pub(super) fn values_differ(old: Half<'_>, new: Half<'_>) -> bool {
-    let mut setups = old.rung.instructions().zip(new.rung.instructions());
-    if setups.any(|(a, b)| !settings((0, a), (0, b)).is_empty()) {
-        return true;
-    }
-    let open = |rung: &Rung| rung.instructions().any(|instruction| !instruction.compiled);
-    if !open(old.rung) && !open(new.rung) {
-        return false;
-    }
-    old.rung.instructions().zip(new.rung.instructions()).any(|(a, b)| {
-        let (a, b) = (parameters(old.image, a), parameters(new.image, b));
-        !a.iter().zip(&b).all(|(a, b)| a.same(b))
-    })
+pub(super) fn words<L: Language>(rung: &L::Rung) -> Vec<Word> {
+    let pieces = L::pieces(rung);
+    let none = vec![Marks::default(); pieces.len()];
+    L::text(rung, &pieces, &none)
 }
 
 /// Compares two rungs piece by piece. `mapping` is applied to the old one; addresses in the place of
 /// others go to `replaced`.
-pub(super) fn compare(
-    old: Half<'_>,
-    new: Half<'_>,
-    mapping: &Mapping,
+pub(super) fn compare<L: Language>(
+    old: Half<'_, L>,
+    new: Half<'_, L>,
+    mapping: &L::Mapping,
     work: &mut Work,
-    mut replaced: Option<&mut Replaced>,
+    mut replaced: Option<&mut L::Replaced>,
 ) -> Inside {
-    let (a, b) = (tokens(old.rung), tokens(new.rung));
+    let (a, b) = (L::pieces(old.rung), L::pieces(new.rung));
     let mut inside = Inside::default();
-    let mut marks = (
-        vec![Marks { whole: true, ..Marks::default() }; a.len()],
-        vec![Marks { whole: true, ..Marks::default() }; b.len()],
-    );
+    let whole = Marks { whole: true, ..Marks::default() };
+    let mut marks = (vec![whole.clone(); a.len()], vec![whole; b.len()]);
     let mut branches = false;
     let mut steps: Vec<(Option<usize>, Option<usize>)> = Vec::new();
     let mut from = (0, 0);
     let anchors = align(&old.key.tokens, &new.key.tokens, work);
     for (i, j) in anchors.into_iter().chain([(a.len(), b.len())]) {
-        steps.extend(gap(&a, &b, from, (i, j), work));
+        steps.extend(gap::<L>(&a, &b, from, (i, j), work));
         if i < a.len() {
             steps.push((Some(i), Some(j)));
         }
@@ -140,42 +104,35 @@ pub(super) fn compare(
     for (i, j) in steps {
         let left = i.and_then(|i| a.get(i)).copied();
         let right = j.and_then(|j| b.get(j)).copied();
-        let instructions = (left.and_then(Token::instruction), right.and_then(Token::instruction));
+        let instructions = (left.and_then(Piece::instruction), right.and_then(Piece::instruction));
         match instructions {
             (Some((m, x)), Some((n, y))) => {
+                let edit = |kind, operand, old, new| Edit {
+                    kind,
+                    old_instruction: Some(m),
+                    new_instruction: Some(n),
+                    mnemonic: L::mnemonic(y),
+                    operand,
+                    old,
+                    new,
+                };
                 let before = inside.edits.len();
-                if x.mnemonic != y.mnemonic {
-                    inside.edits.push(Edit {
-                        kind: EditKind::Instruction,
-                        old_instruction: Some(m),
-                        new_instruction: Some(n),
-                        mnemonic: y.mnemonic.to_string(),
-                        operand: None,
-                        old: x.mnemonic.to_string(),
-                        new: y.mnemonic.to_string(),
-                    });
+                if !L::same_mnemonic(x, y) {
+                    inside.edits.push(edit(EditKind::Instruction, None, L::mnemonic(x), L::mnemonic(y)));
                 }
-                let values = (parameters(old.image, x), parameters(new.image, y));
-                let empty = Operand::Empty;
-                for index in 0..x.operands.len().max(y.operands.len()) {
-                    let (p, q) = (x.operands.get(index).unwrap_or(&empty), y.operands.get(index).unwrap_or(&empty));
-                    if same_operand((x, p), (y, q), index, &values, mapping) {
-                        continue;
+                let differing = L::differing((old, x), (new, y), mapping);
+                if !differing.is_empty() {
+                    let (p, q) = (L::operands(x), L::operands(y));
+                    let text = |all: &[String], index: usize| all.get(index).cloned().unwrap_or_default();
+                    for index in differing {
+                        if let Some(replaced) = replaced.as_deref_mut() {
+                            L::note(x, y, index, (old.program, new.program), replaced);
+                        }
+                        inside.edits.push(edit(EditKind::Operand, Some(index), text(&p, index), text(&q, index)));
                     }
-                    if let Some(replaced) = replaced.as_deref_mut() {
-                        replaced.add(p, q);
-                    }
-                    inside.edits.push(Edit {
-                        kind: EditKind::Operand,
-                        old_instruction: Some(m),
-                        new_instruction: Some(n),
-                        mnemonic: y.mnemonic.to_string(),
-                        operand: Some(index),
-                        old: p.to_string(),
-                        new: q.to_string(),
-                    });
                 }
-                inside.edits.extend(settings((m, x), (n, y)));
+                let settings = L::settings(x, y).into_iter();
+                inside.edits.extend(settings.map(|(old, new)| edit(EditKind::Setting, None, old, new)));
                 let edits = inside.edits.get(before..).unwrap_or_default();
                 let mark = Marks {
                     whole: false,
@@ -185,8 +142,8 @@ pub(super) fn compare(
                 set(&mut marks.0, i, mark.clone());
                 set(&mut marks.1, j, mark);
             }
-            (Some((m, x)), None) => inside.edits.push(one_sided(EditKind::Deleted, m, x)),
-            (None, Some((n, y))) => inside.edits.push(one_sided(EditKind::Inserted, n, y)),
+            (Some((m, x)), None) => inside.edits.push(one_sided::<L>(EditKind::Deleted, m, x)),
+            (None, Some((n, y))) => inside.edits.push(one_sided::<L>(EditKind::Inserted, n, y)),
             (None, None) if left.is_some() && right.is_some() => {
                 set(&mut marks.0, i, Marks::default());
                 set(&mut marks.1, j, Marks::default());
@@ -194,7 +151,8 @@ pub(super) fn compare(
             (None, None) => branches = true,
         }
     }
-    if branches {
+    // Rungs that differ in nothing but how their pieces are joined.
+    if branches || (inside.edits.is_empty() && L::form(old.rung) != L::form(new.rung)) {
         inside.edits.push(Edit {
             kind: EditKind::Branches,
             old_instruction: None,
@@ -205,8 +163,8 @@ pub(super) fn compare(
             new: String::new(),
         });
     }
-    inside.old_words = words_of(&a, &marks.0);
-    inside.new_words = words_of(&b, &marks.1);
+    inside.old_words = L::text(old.rung, &a, &marks.0);
+    inside.new_words = L::text(new.rung, &b, &marks.1);
     inside
 }
 
@@ -216,30 +174,30 @@ fn set(marks: &mut [Marks], index: Option<usize>, mark: Marks) {
     }
 }
 
-fn one_sided(kind: EditKind, number: u32, instruction: &ladder::Instruction) -> Edit {
-    let mut text = instruction.mnemonic.to_string();
-    for operand in instruction.operands.iter().filter(|operand| **operand != Operand::Empty) {
+fn one_sided<L: Language>(kind: EditKind, number: u32, instruction: L::Instruction<'_>) -> Edit {
+    let mnemonic = L::mnemonic(instruction);
+    let mut text = mnemonic.clone();
+    for operand in L::operands(instruction).iter().filter(|operand| !operand.is_empty()) {
         text.push(' ');
-        text.push_str(&operand.to_string());
+        text.push_str(operand);
     }
     let new = kind == EditKind::Inserted;
     let (old_instruction, new_instruction) = if new { (None, Some(number)) } else { (Some(number), None) };
-    let mnemonic = instruction.mnemonic.to_string();
     let (old, new) = if new { (String::new(), text) } else { (text, String::new()) };
     Edit { kind, old_instruction, new_instruction, mnemonic, operand: None, old, new }
 }
 
 /// Pairs between two anchors: similar pieces side by side, all others on their own, in order.
-fn gap(
-    a: &[Token<'_>],
-    b: &[Token<'_>],
+fn gap<L: Language>(
+    a: &[Piece<L::Instruction<'_>>],
+    b: &[Piece<L::Instruction<'_>>],
     from: (usize, usize),
     to: (usize, usize),
     work: &mut Work,
 ) -> Vec<(Option<usize>, Option<usize>)> {
     let count = (to.0.saturating_sub(from.0), to.1.saturating_sub(from.1));
     let alike = |i: usize, j: usize| match (a.get(from.0 + i), b.get(from.1 + j)) {
-        (Some(x), Some(y)) => piece_similarity(*x, *y),
+        (Some(x), Some(y)) => piece_similarity::<L>(*x, *y),
         _ => 0,
     };
     let pairs = pair_similar(count, 4, work, alike);
@@ -255,13 +213,12 @@ fn gap(
     steps
 }
 
-fn piece_similarity(a: Token<'_>, b: Token<'_>) -> u32 {
+fn piece_similarity<L: Language>(a: Piece<L::Instruction<'_>>, b: Piece<L::Instruction<'_>>) -> u32 {
     match (a.instruction(), b.instruction()) {
         (Some((_, a)), Some((_, b))) => {
-            let same = a.operands.iter().zip(&b.operands).filter(|(a, b)| a == b).count();
-            let most = a.operands.len().max(b.operands.len()).max(1);
-            let operands = u32::try_from(same * 500 / most).unwrap_or(0);
-            match (a.mnemonic == b.mnemonic, operands) {
+            let (same, most) = L::alike(a, b);
+            let operands = u32::try_from(same * 500 / most.max(1)).unwrap_or(0);
+            match (L::same_mnemonic(a, b), operands) {
                 (true, operands) => 500 + operands,
                 // A few of many operands agree by chance.
                 (false, operands) if operands >= 300 => operands,
@@ -271,81 +228,4 @@ fn piece_similarity(a: Token<'_>, b: Token<'_>) -> u32 {
         // Marks of one kind have one number: `align` has them.
         _ => 0,
     }
-}
-
-/// What another setting of a message is called, and its values.
-fn settings(old: (u32, &ladder::Instruction), new: (u32, &ladder::Instruction)) -> Vec<Edit> {
-    // Where one side has none, as in rung text, nothing is known of a difference.
-    let (Some(a), Some(b)) = (&old.1.message, &new.1.message) else { return Vec::new() };
-    let (a, b) = (&a.settings, &b.settings);
-    if a == b {
-        return Vec::new();
-    }
-    let value = |all: &[(std::borrow::Cow<'static, str>, String)], name: &str| {
-        all.iter().find(|setting| setting.0 == name).map(|setting| setting.1.clone())
-    };
-    let mut names: Vec<&str> = a.iter().map(|setting| &*setting.0).collect();
-    names.extend(b.iter().map(|setting| &*setting.0).filter(|name| value(a, name).is_none()));
-    let differing = names.into_iter().filter_map(|name| {
-        let (old, new) = (value(a, name), value(b, name));
-        // The flags of the last message, as they stood when the project was saved.
-        (old != new && name != "Status").then(|| (name, old.unwrap_or_default(), new.unwrap_or_default()))
-    });
-    differing
-        .map(|(name, before, after)| Edit {
-            kind: EditKind::Setting,
-            old_instruction: Some(old.0),
-            new_instruction: Some(new.0),
-            mnemonic: new.1.mnemonic.to_string(),
-            operand: None,
-            old: format!("{name}: {before}"),
-            new: format!("{name}: {after}"),
-        })
-        .collect()
-}
-
-fn same_operand(
-    old: (&ladder::Instruction, &Operand),
-    new: (&ladder::Instruction, &Operand),
-    index: usize,
-    values: &(Vec<Parameter>, Vec<Parameter>),
-    mapping: &Mapping,
-) -> bool {
-    let of = |all: &[Parameter]| all.iter().find(|parameter| parameter.index == index).cloned();
-    if let (Some(a), Some(b)) = (of(&values.0), of(&values.1)) {
-        return a.same(&b);
-    }
-    let text = |(instruction, operand): (&ladder::Instruction, &Operand), mapping: &Mapping| {
-        let mut text = String::new();
-        keys::spell_at(instruction, index, operand, mapping, &mut text);
-        text
-    };
-    text(old, mapping) == text(new, &Mapping::default())
-}
-
-/// Which words of a piece differ.
-#[derive(Clone, Debug, Default)]
-struct Marks {
-    whole: bool,
-    name: bool,
-    operands: Vec<usize>,
-}
-
-fn words_of(tokens: &[Token<'_>], marks: &[Marks]) -> Vec<Word> {
-    let mut words = Vec::new();
-    for (token, marks) in tokens.iter().zip(marks) {
-        match token.instruction() {
-            None => words.push(Word { text: token.mark().unwrap_or("").to_owned(), marked: marks.whole }),
-            Some((_, instruction)) => {
-                words.push(Word { text: instruction.mnemonic.to_string(), marked: marks.whole || marks.name });
-                for (index, operand) in instruction.operands.iter().enumerate() {
-                    let marked = marks.whole || marks.operands.contains(&index);
-                    if *operand != Operand::Empty {
-                        words.push(Word { text: operand.to_string(), marked });
-                    }
-                }
-            }
-        }
-    }
-    words
 }

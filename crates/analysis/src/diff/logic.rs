@@ -2,15 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use foldhash::{HashMap, HashMapExt};
-use ladder::{Image, Rung};
-
 use super::align::{Work, align, pair_similar};
 use super::files::{self, Keyed};
-use super::inside::{self, Half};
+use super::inside;
 use super::keys::{Interner, RungKey};
-use super::renames::{Mapping, Replaced};
+use super::language::{BlockId, Half, Language};
 use super::{ChangeKind, Difference, FileChange, LogicChange, Place, RungChange};
+use foldhash::{HashMap, HashMapExt};
 
 /// Words in common, of 1000, from which two rungs at one place are one rung that was changed.
 const CHANGED: u32 = 400;
@@ -51,22 +49,25 @@ struct Matching {
     inserted: Vec<At>,
 }
 
-pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> Matched {
+pub(super) fn compare<L: Language>(old: &L::Program, new: &L::Program, difference: &mut Difference) -> Matched {
     let mut interner = Interner::default();
-    let raw = keyed(old, &mut interner, &Mapping::default());
-    let right = keyed(new, &mut interner, &Mapping::default());
+    let nothing = L::Mapping::default();
+    let raw = keyed::<L>(old, &mut interner, &nothing);
+    let right = keyed::<L>(new, &mut interner, &nothing);
     let mut work = Work::new();
     let pairs = files::pair(&raw, &right, &mut work);
 
-    let number = |files: &[Keyed<'_>], index: usize| files.get(index).map_or(0, |keyed| keyed.file.number);
+    let number = |files: &[Keyed<'_, L>], index: usize| files.get(index).map_or(0, |keyed| keyed.file.number);
     let numbers: Vec<(u16, u16)> = pairs.iter().map(|(i, j)| (number(&raw, *i), number(&right, *j))).collect();
-    let mut mapping = Mapping::of_files(numbers.iter().copied().filter(|(a, b)| a != b));
-    let mut left = if mapping.is_empty() { None } else { Some(keyed(old, &mut interner, &mapping)) };
+    let ids = |(i, j): &(usize, usize)| Some((raw.get(*i)?.file.id, right.get(*j)?.file.id));
+    let ids: Vec<(BlockId<'_>, BlockId<'_>)> = pairs.iter().filter_map(ids).collect();
+    let mut mapping = L::renumbered(&ids);
+    let mut left = if L::is_identity(&mapping) { None } else { Some(keyed::<L>(old, &mut interner, &mapping)) };
     let mut matching = matched(left.as_deref().unwrap_or(&raw), &right, &pairs, &mut work);
 
     // A first look at what differs finds the addresses that were replaced throughout; matching again
     // with them finds rungs that look different only because of them.
-    let mut replaced = Replaced::default();
+    let mut replaced = L::Replaced::default();
     let sides = (left.as_deref().unwrap_or(&raw), right.as_slice());
     for (a, b, _) in &matching.pairs {
         if let Some((a, b)) = halves(sides, (old, new), *a, *b)
@@ -75,33 +76,33 @@ pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> 
             inside::compare(a, b, &mapping, &mut work, Some(&mut replaced));
         }
     }
-    difference.renames = replaced.find(old, new, &mut mapping);
+    difference.renames = L::renames(&replaced, old, new, &mut mapping);
     if !difference.renames.is_empty() {
         work.refill();
-        let renamed = keyed(old, &mut interner, &mapping);
+        let renamed = keyed::<L>(old, &mut interner, &mapping);
         matching = matched(&renamed, &right, &pairs, &mut work);
         left = Some(renamed);
     }
 
     let sides = (left.as_deref().unwrap_or(&raw), right.as_slice());
-    let place = |files: &[Keyed<'_>], at: At| Place { file: number(files, at.0), rung: at.1 };
+    let place = |files: &[Keyed<'_, L>], at: At| Place { file: number(files, at.0), rung: at.1 };
     let mut changes: Vec<(u16, usize, u8, RungChange)> = Vec::new();
     let (mut rungs, mut setups) = (Vec::new(), 0);
     for (i, j, found) in &matching.pairs {
         let (from, to) = (place(&raw, *i), place(&right, *j));
         rungs.push((from, to));
         let Some((a, b)) = halves(sides, (old, new), *i, *j) else { continue };
-        setups += inside::one_sided_setups(a, b);
-        let changed = a.key.id != b.key.id || inside::values_differ(a, b);
+        setups += L::one_sided_setups(a, b);
+        let changed = a.key.id != b.key.id || L::values_differ(a, b);
         let renamed = raw.get(i.0).and_then(|file| file.keys.get(i.1)).is_some_and(|key| key.id != b.key.id);
         if !changed && !renamed && *found == Found::InPlace {
             continue;
         }
         let inside = if changed || renamed {
-            let shown = if changed { &mapping } else { &Mapping::default() };
+            let shown = if changed { &mapping } else { &nothing };
             inside::compare(a, b, shown, &mut work, None)
         } else {
-            inside::Inside { new_words: inside::words(b.rung), ..inside::Inside::default() }
+            inside::Inside { new_words: inside::words::<L>(b.rung), ..inside::Inside::default() }
         };
         let kind = if *found == Found::Moved { ChangeKind::Moved } else { ChangeKind::Changed };
         changes.push((
@@ -125,7 +126,7 @@ pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> 
     {
         for at in all {
             let Some(rung) = files.get(at.0).and_then(|keyed| keyed.file.rungs.get(at.1)) else { continue };
-            changes.push(one_sided(kind, place(files, *at), rung, &became));
+            changes.push(one_sided::<L>(kind, place(files, *at), rung, &became));
         }
     }
     changes.sort_by_key(|(file, rung, order, _)| (*file, *rung, *order));
@@ -147,8 +148,13 @@ pub(super) fn compare(old: &Image, new: &Image, difference: &mut Difference) -> 
     Matched { files: numbers, rungs }
 }
 
-fn one_sided(kind: ChangeKind, at: Place, rung: &Rung, became: &BTreeMap<u16, u16>) -> (u16, usize, u8, RungChange) {
-    let words = inside::words(rung);
+fn one_sided<L: Language>(
+    kind: ChangeKind,
+    at: Place,
+    rung: &L::Rung,
+    became: &BTreeMap<u16, u16>,
+) -> (u16, usize, u8, RungChange) {
+    let words = inside::words::<L>(rung);
     let deleted = kind == ChangeKind::Deleted;
     let file = if deleted { became.get(&at.file).copied().unwrap_or(at.file) } else { at.file };
     let (old_words, new_words) = if deleted { (words, Vec::new()) } else { (Vec::new(), words) };
@@ -164,30 +170,31 @@ fn one_sided(kind: ChangeKind, at: Place, rung: &Rung, became: &BTreeMap<u16, u1
     (file, at.rung, u8::from(!deleted), change)
 }
 
-fn keyed<'a>(image: &'a Image, interner: &mut Interner, mapping: &Mapping) -> Vec<Keyed<'a>> {
-    let files = image.ladder_files();
-    files
-        .map(|file| Keyed { file, keys: file.rungs.iter().map(|rung| interner.rung(rung, mapping)).collect() })
-        .collect()
+fn keyed<'a, L: Language>(program: &'a L::Program, interner: &mut Interner, mapping: &L::Mapping) -> Vec<Keyed<'a, L>> {
+    let keys = |rungs: &[L::Rung], interner: &mut Interner| -> Vec<RungKey> {
+        rungs.iter().map(|rung| interner.rung::<L>(program, rung, mapping)).collect()
+    };
+    let files = L::blocks(program).into_iter();
+    files.map(|file| Keyed { keys: keys(file.rungs, interner), file }).collect()
 }
 
-fn halves<'a>(
-    sides: (&'a [Keyed<'a>], &'a [Keyed<'a>]),
-    images: (&'a Image, &'a Image),
+fn halves<'a, L: Language>(
+    sides: (&'a [Keyed<'a, L>], &'a [Keyed<'a, L>]),
+    programs: (&'a L::Program, &'a L::Program),
     a: At,
     b: At,
-) -> Option<(Half<'a>, Half<'a>)> {
-    let half = |files: &'a [Keyed<'a>], image: &'a Image, at: At| {
+) -> Option<(Half<'a, L>, Half<'a, L>)> {
+    let half = |files: &'a [Keyed<'a, L>], program: &'a L::Program, at: At| {
         let keyed = files.get(at.0)?;
-        Some(Half { image, rung: keyed.file.rungs.get(at.1)?, key: keyed.keys.get(at.1)? })
+        Some(Half { program, rung: keyed.file.rungs.get(at.1)?, key: keyed.keys.get(at.1)? })
     };
-    Some((half(sides.0, images.0, a)?, half(sides.1, images.1, b)?))
+    Some((half(sides.0, programs.0, a)?, half(sides.1, programs.1, b)?))
 }
 
 /// Program files that are new, gone, or have another number.
-fn file_changes(old: &[Keyed<'_>], new: &[Keyed<'_>], pairs: &[(usize, usize)]) -> Vec<LogicChange> {
+fn file_changes<L: Language>(old: &[Keyed<'_, L>], new: &[Keyed<'_, L>], pairs: &[(usize, usize)]) -> Vec<LogicChange> {
     let mut changes = Vec::new();
-    let one = |kind, old: Option<&Keyed<'_>>, new: Option<&Keyed<'_>>| {
+    let one = |kind, old: Option<&Keyed<'_, L>>, new: Option<&Keyed<'_, L>>| {
         LogicChange::File(FileChange {
             kind,
             old: old.map(|keyed| keyed.file.number),
@@ -197,7 +204,7 @@ fn file_changes(old: &[Keyed<'_>], new: &[Keyed<'_>], pairs: &[(usize, usize)]) 
     };
     for (i, j) in pairs {
         let (a, b) = (old.get(*i), new.get(*j));
-        if a.map(|keyed| keyed.file.number) != b.map(|keyed| keyed.file.number) {
+        if a.map(|keyed| keyed.file.id) != b.map(|keyed| keyed.file.id) {
             changes.push(one(ChangeKind::Moved, a, b));
         }
     }
@@ -214,7 +221,12 @@ struct Gap {
     new: Vec<At>,
 }
 
-fn matched(old: &[Keyed<'_>], new: &[Keyed<'_>], files: &[(usize, usize)], work: &mut Work) -> Matching {
+fn matched<L: Language>(
+    old: &[Keyed<'_, L>],
+    new: &[Keyed<'_, L>],
+    files: &[(usize, usize)],
+    work: &mut Work,
+) -> Matching {
     let mut matching = Matching::default();
     let mut gaps: Vec<(usize, Gap)> = Vec::new();
     for (number, (i, j)) in files.iter().enumerate() {
@@ -286,14 +298,19 @@ fn equal_in_order(a: &[RungKey], b: &[RungKey], work: &mut Work) -> Vec<(usize, 
     (0..start).map(|k| (k, k)).chain(equal).chain(tail).collect()
 }
 
-fn key<'a>(files: &'a [Keyed<'_>], at: At) -> Option<&'a RungKey> {
+fn key<'a, L: Language>(files: &'a [Keyed<'_, L>], at: At) -> Option<&'a RungKey> {
     files.get(at.0)?.keys.get(at.1)
 }
 
 /// Equal rungs at another place, in the same file first.
-fn equal_elsewhere(old: &[Keyed<'_>], new: &[Keyed<'_>], gaps: &mut [(usize, Gap)], matching: &mut Matching) {
-    let ends = |files: &[Keyed<'_>], at: At| {
-        files.get(at.0).and_then(|keyed| keyed.file.rungs.get(at.1)).is_none_or(Rung::is_end)
+fn equal_elsewhere<L: Language>(
+    old: &[Keyed<'_, L>],
+    new: &[Keyed<'_, L>],
+    gaps: &mut [(usize, Gap)],
+    matching: &mut Matching,
+) {
+    let ends = |files: &[Keyed<'_, L>], at: At| {
+        files.get(at.0).and_then(|keyed| keyed.file.rungs.get(at.1)).is_none_or(L::is_end)
     };
     for same_file in [true, false] {
         let group = |number: usize| if same_file { Some(number) } else { None };
@@ -323,7 +340,13 @@ fn equal_elsewhere(old: &[Keyed<'_>], new: &[Keyed<'_>], gaps: &mut [(usize, Gap
 }
 
 /// Changed rungs that kept their place between their neighbours.
-fn similar_in_place(old: &[Keyed<'_>], new: &[Keyed<'_>], gap: &mut Gap, matching: &mut Matching, work: &mut Work) {
+fn similar_in_place<L: Language>(
+    old: &[Keyed<'_, L>],
+    new: &[Keyed<'_, L>],
+    gap: &mut Gap,
+    matching: &mut Matching,
+    work: &mut Work,
+) {
     let cost = mean_words(old, &gap.old) + mean_words(new, &gap.new);
     let pairs = pair_similar((gap.old.len(), gap.new.len()), cost, work, |i, j| {
         let keys = (gap.old.get(i).and_then(|at| key(old, *at)), gap.new.get(j).and_then(|at| key(new, *at)));
@@ -334,7 +357,13 @@ fn similar_in_place(old: &[Keyed<'_>], new: &[Keyed<'_>], gap: &mut Gap, matchin
 }
 
 /// Changed rungs at another place of their file, the most similar first.
-fn similar_elsewhere(old: &[Keyed<'_>], new: &[Keyed<'_>], gap: &mut Gap, matching: &mut Matching, work: &mut Work) {
+fn similar_elsewhere<L: Language>(
+    old: &[Keyed<'_, L>],
+    new: &[Keyed<'_, L>],
+    gap: &mut Gap,
+    matching: &mut Matching,
+    work: &mut Work,
+) {
     let cost = mean_words(old, &gap.old) + mean_words(new, &gap.new) + 1;
     let cells = gap.old.len().saturating_mul(gap.new.len());
     if cells == 0 || !work.take(cells.saturating_mul(cost)) {
@@ -382,7 +411,7 @@ fn take(gap: &mut Gap, pairs: Vec<(usize, usize)>, found: Found, matching: &mut 
 }
 
 /// Words of these rungs on average: what one comparison costs.
-fn mean_words(files: &[Keyed<'_>], rungs: &[At]) -> usize {
+fn mean_words<L: Language>(files: &[Keyed<'_, L>], rungs: &[At]) -> usize {
     let words: usize = rungs.iter().filter_map(|at| key(files, *at)).map(|key| key.bag.len()).sum();
     words.div_ceil(rungs.len().max(1))
 }

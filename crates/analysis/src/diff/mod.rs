@@ -15,8 +15,10 @@ mod documentation;
 mod files;
 mod inside;
 mod keys;
+mod language;
 mod logic;
 mod renames;
+mod rslogix;
 mod values;
 
 use std::fmt;
@@ -205,7 +207,7 @@ pub struct ValueChange {
 /// ```
 pub fn compare(old: Side<'_>, new: Side<'_>) -> Difference {
     let mut difference = Difference::default();
-    let matched = logic::compare(old.image, new.image, &mut difference);
+    let matched = logic::compare::<rslogix::Rslogix>(old.image, new.image, &mut difference);
     match (old.documentation, new.documentation) {
         (Some(a), Some(b)) => {
             difference.documentation = documentation::compare((old.image, a), (new.image, b), &matched);
