@@ -133,8 +133,8 @@ pub const FIXED: &[(&str, &str)] = &[
     ("what stands behind a box with several legs", "its top leg is the power flow"),
     ("the square waves ST3 to ST5", "OFF in the first half of their period"),
     (
-        "inputs that the program itself writes",
-        "they keep what was written until they are set from outside; a controller would read them again before the next scan",
+        "X, WX and RX that no module has",
+        "they have terminals as all others: what the program writes there lasts until the next scan reads them",
     ),
     ("the clock", "1 January 2000 when the machine is made, moved by simulated time; Sunday is day 0"),
     ("retention", "blocks with -1 in their fifth column lose their content at power loss, all others keep it"),

@@ -8,6 +8,7 @@ mod value;
 
 use std::collections::HashMap;
 use std::fmt;
+use std::ops::Range;
 
 pub use value::{Data, Num};
 
@@ -19,6 +20,10 @@ const MOST_BYTES: u64 = 64 << 20;
 
 /// Stages of a program. (help DMD0508)
 pub const STAGES: u32 = 128;
+
+/// Blocks that the I/O scan fills from the terminals before the programs run. MI and MIR are not among them: other
+/// devices only read those, and programs write them.
+const INPUTS: [&str; 3] = ["X", "WX", "RX"];
 
 /// What an element is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -117,6 +122,23 @@ pub enum Kind {
     Text(u16),
 }
 
+impl Kind {
+    /// Least and greatest number of an integer; `None` for reals and strings.
+    #[inline]
+    pub fn limits(self) -> Option<(i64, i64)> {
+        Some(match self {
+            Kind::Bit => (0, 1),
+            Kind::U8 => (0, u8::MAX.into()),
+            Kind::I8 => (i8::MIN.into(), i8::MAX.into()),
+            Kind::U16 => (0, u16::MAX.into()),
+            Kind::I16 => (i16::MIN.into(), i16::MAX.into()),
+            Kind::I32 => (i32::MIN.into(), i32::MAX.into()),
+            Kind::U32 => (0, u32::MAX.into()),
+            Kind::F32 | Kind::Text(_) => return None,
+        })
+    }
+}
+
 /// Where a value lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
@@ -158,6 +180,18 @@ impl Block {
     /// The first bit of an element; `None` outside the block.
     pub fn element_bit(&self, number: u32) -> Option<u32> {
         (number < self.count).then(|| self.start + number * self.element.bits())
+    }
+
+    /// Whether the I/O scan fills it from the terminals.
+    pub fn is_input(&self) -> bool {
+        INPUTS.iter().any(|name| self.name.eq_ignore_ascii_case(name))
+    }
+
+    /// Its bytes in all memory.
+    pub fn bytes(&self) -> Range<usize> {
+        let start = (self.start >> 3) as usize;
+        let bytes = (u64::from(self.count) * u64::from(self.element.bits())).div_ceil(8);
+        start..start + bytes as usize
     }
 
     /// The place of an element that is no structure.

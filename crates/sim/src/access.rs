@@ -173,7 +173,7 @@ impl Machine {
                     _ => return Err(unfit(self)),
                 };
                 let word = self.word(at) & !(1 << location.bit) | u16::from(on) << location.bit;
-                self.write(at, word);
+                self.write_bits(at, word, 1 << location.bit);
             }
             Width::Word => {
                 let word = match value {
@@ -224,6 +224,12 @@ impl Machine {
     }
 
     fn write(&mut self, at: u32, word: u16) {
+        self.write_bits(at, word, u16::MAX);
+    }
+
+    /// Writes a word of which the bits of the mask were asked for: of an input the image of the others can be what the
+    /// program or a force made of it, which its terminals are not told.
+    fn write_bits(&mut self, at: u32, word: u16, mask: u16) {
         if self.clock_refuses(at, word) {
             return;
         }
@@ -245,7 +251,7 @@ impl Machine {
         if (first..first + count).contains(&at)
             && let Some(terminal) = self.state.inputs.get_mut(at - first)
         {
-            *terminal = word;
+            *terminal = *terminal & !mask | word & mask;
         }
     }
 

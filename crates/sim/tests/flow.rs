@@ -251,6 +251,13 @@ fn clocks_run() {
 }
 
 #[test]
+fn a_bit_set_from_outside_leaves_the_terminals_beside_it_alone() {
+    let ladder = "XIC I:0/1 OTE B3:0/0\nOTL I:0/1\nXIC I:0/1 OTE B3:0/1";
+    let mut bench = Bench::new(MicroLogix1100, ladder, &[]);
+    bench.scans(1).set("I:0/0", 1).scans(1).expect(&[("B3:0/0", 0), ("B3:0/1", 1), ("I:0/0", 1)]);
+}
+
+#[test]
 fn forces_act_while_enabled() {
     let mut bench = Bench::new(Slc503, "XIC I:0/0 OTE O:0/0", &[]);
     let address = |text: &str| ladder::Address::parse(text).expect("address");

@@ -24,6 +24,7 @@ pub(crate) fn compile(project: &Project, options: &Options) -> Result<(Compiled,
     let notes = map.notes.clone();
     let compiled = Compiled {
         system: super::clock::System::of(&map),
+        inputs: inputs(&map),
         map,
         choices: options.choices,
         watchdog: options.watchdog,
@@ -54,6 +55,17 @@ pub(crate) fn compile(project: &Project, options: &Options) -> Result<(Compiled,
         compiler.block(index as u32, block);
     }
     compiler.finish(project)
+}
+
+/// The blocks the I/O scan fills, their terminals one behind the other.
+fn inputs(map: &Map) -> Vec<Input> {
+    let blocks = map.blocks().iter().filter(|block| block.is_input());
+    let row = |terminal: &mut usize, block: &crate::memory::Block| {
+        let (image, bytes) = (block.bytes().start, block.bytes().len());
+        let terminal = std::mem::replace(terminal, *terminal + bytes);
+        Some(Input { image, terminal, bytes })
+    };
+    blocks.scan(0, row).collect()
 }
 
 fn name_of(block: &CodeBlock) -> &str {
@@ -350,6 +362,9 @@ impl Compiler {
                 instruction.mnemonic.hash(&mut hash);
                 instruction.operands.hash(&mut hash);
             }
+        }
+        for block in self.out.map.blocks() {
+            (&block.name, block.start, block.element).hash(&mut hash);
         }
         (self.out.map.bytes(), self.out.choices.bits(), self.out.watchdog).hash(&mut hash);
         self.out.identity = hash.finish();

@@ -138,13 +138,11 @@ impl Machine {
     }
 
     /// Power is lost and comes back: no termination scan, memory that is not retentive is zero, the mode
-    /// is the one before.
+    /// is the one before. Terminals keep what they carry.
     pub fn power_cycle(&mut self) {
         let blocks: Vec<_> = self.program.map.blocks().to_vec();
         for block in blocks.iter().filter(|block| block.retention == Retention::None) {
-            let start = (block.start >> 3) as usize;
-            let bytes = (u64::from(block.count) * u64::from(block.element.bits())).div_ceil(8) as usize;
-            if let Some(bytes) = self.state.data.bytes_mut().get_mut(start..start + bytes) {
+            if let Some(bytes) = self.state.data.bytes_mut().get_mut(block.bytes()) {
                 bytes.fill(0);
             }
         }
@@ -161,7 +159,7 @@ impl Machine {
         }
     }
 
-    /// Time passes, then one scan runs. In program mode only time passes. The first scan after entering
+    /// Time passes, then one scan runs: inputs from their terminals, tasks and programs. In program mode only time passes. The first scan after entering
     /// run usually has `dt` 0.
     pub fn scan(&mut self, dt: Duration) -> ScanReport {
         self.scan_watched(dt, &mut NoWatch)
@@ -174,6 +172,7 @@ impl Machine {
         if self.state.mode == Mode::Run {
             self.state.limit = before.saturating_add(self.program.watchdog);
             let mut core = self.core();
+            core.read_inputs();
             core.show_system(nanoseconds(dt));
             if core.all(watch) == Ended::Fault {
                 // The machine stops as it stands, so that a person can look at it.
@@ -268,7 +267,8 @@ impl Machine {
         Ok(self.value(self.handle(address)?))
     }
 
-    /// Writes an element. Numbers are converted only where nothing is lost.
+    /// Writes an element. Numbers are converted only where nothing is lost. An input is written to its terminal and
+    /// its image.
     ///
     /// # Errors
     /// As [`Machine::handle`]; the element is read-only, of another sort, or too small for the value.
@@ -286,13 +286,27 @@ impl Machine {
         if handle.0.read_only {
             return Err(wrong("it is read-only: an instruction owns it".to_owned()));
         }
-        let before = self.value(handle);
+        let limits = handle.0.kind.limits();
+        let fits = match value {
+            Value::Integer(number) => limits.is_none_or(|(least, most)| (least..=most).contains(number)),
+            Value::Real(_) if handle.0.kind == Kind::Bit => true,
+            Value::Real(number) => limits.is_none_or(|(least, most)| {
+                number.fract() == 0.0 && (least as f64..=most as f64).contains(&f64::from(*number))
+            }),
+            _ => true,
+        };
+        if !fits {
+            return Err(wrong("the value does not fit".to_owned()));
+        }
         match (value, handle.0.kind) {
             (Value::Text(text), Kind::Text(most)) => {
                 if text.chars().count() > usize::from(most) || !self.state.data.set_text(handle.0, text) {
                     return Err(wrong(format!(
                         "the text has more than {most} characters, or one a string cannot hold"
                     )));
+                }
+                if let Some(terminal) = self.program.terminal(handle.0) {
+                    self.state.terminals.set_text(terminal, text);
                 }
             }
             (Value::Text(_), _) | (_, Kind::Text(_)) => {
@@ -302,22 +316,10 @@ impl Machine {
             (Value::Integer(number), _) => self.set_number(handle, Num::Int(*number)),
             (Value::Real(number), _) => self.set_number(handle, Num::Real((*number).into())),
         }
-        let exact = match (value, self.value(handle)) {
-            (Value::Integer(wanted), Value::Integer(found)) => *wanted == found,
-            (Value::Integer(wanted), Value::Bit(found)) => *wanted == i64::from(found),
-            (Value::Real(wanted), Value::Integer(found)) => f64::from(*wanted) == found as f64,
-            _ => true,
-        };
-        if !exact {
-            if let Value::Integer(number) = before {
-                self.set_number(handle, Num::Int(number));
-            }
-            return Err(wrong("the value does not fit".to_owned()));
-        }
         Ok(())
     }
 
-    /// The value at a place.
+    /// The value at a place; of an input the image, as the program sees it.
     pub fn value(&self, handle: Handle) -> Value {
         match (handle.0.kind, self.state.data.number(handle.0)) {
             (Kind::Text(_), _) => Value::Text(self.state.data.text(handle.0)),
@@ -333,10 +335,13 @@ impl Machine {
         self.state.data.number(handle.0)
     }
 
-    /// Writes a number, converted to the type of the place.
+    /// Writes a number, converted to the type of the place; of an input to its terminal and its image.
     #[inline]
     pub fn set_number(&mut self, handle: Handle, number: Num) {
         self.state.data.store(handle.0, number, self.program.choices);
+        if let Some(terminal) = self.program.terminal(handle.0) {
+            self.state.terminals.store(terminal, number, self.program.choices);
+        }
         let date = self.program.system.date;
         if (date..date + 64).contains(&handle.0.bit) {
             self.core().take_date();
@@ -379,6 +384,18 @@ impl Machine {
 }
 
 impl Core<'_> {
+    /// Terminals to X, WX and RX.
+    fn read_inputs(&mut self) {
+        let state = &mut *self.s;
+        for input in &self.p.inputs {
+            let terminals = state.terminals.bytes().get(input.terminal..input.terminal + input.bytes);
+            let image = state.data.bytes_mut().get_mut(input.image..input.image + input.bytes);
+            if let (Some(image), Some(terminals)) = (image, terminals) {
+                image.copy_from_slice(terminals);
+            }
+        }
+    }
+
     /// All code blocks of a scan: tasks that are due, then programs in the order of the text.
     fn all<W: Watch>(&mut self, watch: &mut W) -> Ended {
         let p = self.p;

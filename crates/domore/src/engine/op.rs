@@ -304,6 +304,16 @@ pub(crate) struct Spot {
     pub(crate) instruction: u32,
 }
 
+/// A block that the I/O scan fills.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Input {
+    /// First byte of its image in all memory.
+    pub(crate) image: usize,
+    /// First byte among the terminals.
+    pub(crate) terminal: usize,
+    pub(crate) bytes: usize,
+}
+
 /// How many memories of each sort the operations need.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Counts {
@@ -318,6 +328,7 @@ pub(crate) struct Counts {
 pub(crate) struct Compiled {
     pub(crate) map: Map,
     pub(crate) system: super::clock::System,
+    pub(crate) inputs: Vec<Input>,
     pub(crate) ops: Vec<Op>,
     pub(crate) spots: Vec<Spot>,
     pub(crate) blocks: Vec<BlockCode>,
@@ -339,4 +350,19 @@ pub(crate) struct Compiled {
     pub(crate) watchdog: u64,
     /// Tells programs apart in saved states.
     pub(crate) identity: u64,
+}
+
+impl Compiled {
+    /// Where the terminals of an input lie; `None` for everything else.
+    pub(crate) fn terminal(&self, place: Place) -> Option<Place> {
+        let byte = (place.bit >> 3) as usize;
+        let input = self.inputs.iter().find(|input| (input.image..input.image + input.bytes).contains(&byte))?;
+        let bit = 8 * (byte - input.image + input.terminal) as u32 + (place.bit & 7);
+        Some(Place { bit, ..place })
+    }
+
+    /// Bytes of all terminals.
+    pub(crate) fn terminals(&self) -> usize {
+        self.inputs.iter().map(|input| input.bytes).sum()
+    }
 }

@@ -1,6 +1,6 @@
 //! Saved states: a stable byte form of [`State`].
 //!
-//! `RUNGSDM1`, the identity of the program, then every field in a fixed order, numbers little-endian.
+//! `RUNGSDM2`, the identity of the program, then every field in a fixed order, numbers little-endian.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use super::state::{BlockState, Phase, State, TimerClock};
 use super::{Fault, Mode};
 use crate::memory::Num;
 
-const MAGIC: &[u8; 8] = b"RUNGSDM1";
+const MAGIC: &[u8; 8] = b"RUNGSDM2";
 
 /// Why bytes are no state of this machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,7 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
     let long = |out: &mut Vec<u8>, value: u64| out.extend_from_slice(&value.to_le_bytes());
     long(&mut out, program.identity);
     out.extend_from_slice(state.data.bytes());
+    out.extend_from_slice(state.terminals.bytes());
     for value in [state.now, state.scans, state.executed, state.limit, state.troubles] {
         long(&mut out, value);
     }
@@ -87,7 +88,7 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
         return Err(RestoreError::OtherProgram);
     }
     let mut state = State::new(program);
-    for byte in state.data.bytes_mut() {
+    for byte in state.data.bytes_mut().iter_mut().chain(state.terminals.bytes_mut()) {
         *byte = reader.byte()?;
     }
     for field in [&mut state.now, &mut state.scans, &mut state.executed, &mut state.limit, &mut state.troubles] {

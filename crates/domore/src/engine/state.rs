@@ -39,6 +39,8 @@ pub(crate) struct BlockState {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     pub(crate) data: Data,
+    /// What the inputs carry, which the scan copies into `data`.
+    pub(crate) terminals: Data,
     /// Nanoseconds since the machine was made.
     pub(crate) now: u64,
     pub(crate) scans: u64,
@@ -71,6 +73,7 @@ impl State {
         let counts = program.counts;
         State {
             data: Data::new(program.map.bytes()),
+            terminals: Data::new(program.terminals()),
             now: 0,
             scans: 0,
             executed: 0,
@@ -94,18 +97,42 @@ impl State {
 
     /// Takes over another state without new allocations.
     pub(crate) fn copy_from(&mut self, other: &State) {
-        self.data.bytes_mut().copy_from_slice(other.data.bytes());
-        self.blocks.copy_from_slice(&other.blocks);
-        self.edges.copy_from_slice(&other.edges);
-        self.values.copy_from_slice(&other.values);
-        self.timers.copy_from_slice(&other.timers);
-        self.resets.copy_from_slice(&other.resets);
-        self.phases.copy_from_slice(&other.phases);
-        self.or_outs.copy_from_slice(&other.or_outs);
-        self.stages.copy_from_slice(&other.stages);
-        (self.now, self.scans, self.executed, self.troubles) = (other.now, other.scans, other.executed, other.troubles);
-        self.limit = other.limit;
-        (self.mode, self.fault, self.first) = (other.mode, other.fault, other.first);
-        (self.clock, self.shown_second) = (other.clock, other.shown_second);
+        // Named one by one, so that a new field cannot be forgotten.
+        let State {
+            data,
+            terminals,
+            now,
+            scans,
+            executed,
+            limit,
+            troubles,
+            mode,
+            fault,
+            first,
+            clock,
+            shown_second,
+            blocks,
+            edges,
+            values,
+            timers,
+            resets,
+            phases,
+            or_outs,
+            stages,
+        } = other;
+        self.data.bytes_mut().copy_from_slice(data.bytes());
+        self.terminals.bytes_mut().copy_from_slice(terminals.bytes());
+        (self.now, self.scans, self.executed) = (*now, *scans, *executed);
+        (self.limit, self.troubles) = (*limit, *troubles);
+        (self.mode, self.fault, self.first) = (*mode, *fault, *first);
+        (self.clock, self.shown_second) = (*clock, *shown_second);
+        self.blocks.copy_from_slice(blocks);
+        self.edges.copy_from_slice(edges);
+        self.values.copy_from_slice(values);
+        self.timers.copy_from_slice(timers);
+        self.resets.copy_from_slice(resets);
+        self.phases.copy_from_slice(phases);
+        self.or_outs.copy_from_slice(or_outs);
+        self.stages.copy_from_slice(stages);
     }
 }

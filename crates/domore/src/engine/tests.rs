@@ -279,6 +279,49 @@ fn states_are_saved_forked_and_taken_over() {
 }
 
 #[test]
+fn inputs_are_read_from_their_terminals_before_each_scan() {
+    let text = "STR X1\nOUT C0\n\nSTR ST1\nOUT X1\nMOVE 7 WX0\nMOVE 2.5 RX1\nINC N0\n\nSTR X1\nOUT C1";
+    let mut m = machine(text);
+    m.scans_of(2);
+    // The program sees its own value behind the coil, and the terminal again in the next scan.
+    m.shows(&[("C0", 0), ("C1", 1), ("X1", 1), ("WX0", 7)]);
+    // Its neighbours are set from outside: the terminal of X1 is not told what the program wrote.
+    m.put("X0", 1);
+    m.put("WX0:3", 1);
+    m.scan(MS10);
+    m.shows(&[("C0", 0), ("X0", 1)]);
+    let mut read = machine("STR X1\nOUT C0\nMOVE WX0 N1");
+    for (address, value) in [("X1", 1), ("WX0", -5)] {
+        read.put(address, value);
+    }
+    read.scans_of(2);
+    read.shows(&[("X1", 1), ("WX0", -5), ("C0", 1), ("N1", -5)]);
+    // Terminals are part of the state, in all its forms.
+    let saved = m.save();
+    let mut other = machine(text);
+    other.restore(&saved).expect("restores");
+    let mut copy = machine(text).fork();
+    assert!(!copy.copy_from(&m));
+    copy = m.fork();
+    m.enter_program();
+    m.enter_run();
+    for machine in [&mut m, &mut other, &mut copy] {
+        machine.scan(MS10);
+        machine.shows(&[("X0", 1), ("C0", 0)]);
+        machine.put("X1", 1);
+        machine.scan(MS10);
+        machine.shows(&[("C0", 1)]);
+    }
+    // What does not fit changes neither image nor terminal.
+    assert!(m.set("WX0", &Value::Integer(40_000)).is_err());
+    assert!(m.set("X0", &Value::Integer(2)).is_err());
+    m.power_cycle();
+    m.shows(&[("X0", 0)]);
+    m.scan(MS10);
+    m.shows(&[("X0", 1)]);
+}
+
+#[test]
 fn power_loss_clears_what_is_not_retentive() {
     let mut m = machine("STR X0\nSET Y0\nSET C0\nMOVE 7 N0");
     m.put("X0", 1);

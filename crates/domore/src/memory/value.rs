@@ -47,11 +47,15 @@ impl Num {
         }
     }
 
-    /// The number in an integer type from `least` to `most`, of `bits` bits.
-    fn fitted(self, least: i64, most: i64, choices: Choices) -> i64 {
+    /// The number as it goes into an integer type; what is beyond its limits is left to whoever cuts the bits.
+    #[inline]
+    fn fitted(self, kind: Kind, choices: Choices) -> i64 {
         let value = self.integer(choices);
         let saturates = matches!(self, Num::Real(_)) || choices.has(Choice::StoreSaturates);
-        if saturates { value.clamp(least, most) } else { value }
+        match kind.limits() {
+            Some((least, most)) if saturates => value.clamp(least, most),
+            _ => value,
+        }
     }
 }
 
@@ -150,15 +154,12 @@ impl Data {
     #[inline]
     pub fn store(&mut self, place: Place, value: Num, choices: Choices) {
         let bit = place.bit;
-        let fitted = |least: i64, most: i64| value.fitted(least, most, choices);
+        let fitted = || value.fitted(place.kind, choices);
         match place.kind {
             Kind::Bit => self.set_bit(bit, value.is_on()),
-            Kind::U8 => self.set_byte(bit, fitted(0, 0xFF) as u8),
-            Kind::I8 => self.set_byte(bit, fitted(-0x80, 0x7F) as u8),
-            Kind::U16 => self.put(bit, (fitted(0, 0xFFFF) as u16).to_le_bytes()),
-            Kind::I16 => self.put(bit, (fitted(-0x8000, 0x7FFF) as u16).to_le_bytes()),
-            Kind::I32 => self.put(bit, (fitted(i32::MIN.into(), i32::MAX.into()) as u32).to_le_bytes()),
-            Kind::U32 => self.put(bit, (fitted(0, u32::MAX.into()) as u32).to_le_bytes()),
+            Kind::U8 | Kind::I8 => self.set_byte(bit, fitted() as u8),
+            Kind::U16 | Kind::I16 => self.put(bit, (fitted() as u16).to_le_bytes()),
+            Kind::I32 | Kind::U32 => self.put(bit, (fitted() as u32).to_le_bytes()),
             Kind::F32 => self.put(bit, (value.real() as f32).to_le_bytes()),
             Kind::Text(_) => {}
         }
