@@ -483,7 +483,7 @@ pub struct DiffArguments {
     /// The old program: a project, SLC text or JSON project; or a folder of projects
     #[arg(value_name = "A")]
     pub old: PathBuf,
-    /// The new program, or a folder whose files have the same names
+    /// The new program, or a folder: its files are found by name, then by content
     #[arg(value_name = "B")]
     pub new: Option<PathBuf>,
     /// Compare the image last exchanged with a processor with the program in the same file
@@ -492,8 +492,8 @@ pub struct DiffArguments {
     /// What counts and is shown; default: everything
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SECTION")]
     pub only: Vec<Section>,
-    /// Rungs as text, one below the other, whatever the width
-    #[arg(long, conflicts_with = "two_sided")]
+    /// Unified text for reviews: rungs as SLC text with their neighbours, then the other sections
+    #[arg(long, conflicts_with_all = ["two_sided", "json"])]
     pub unified: bool,
     /// Rungs drawn side by side, whatever the width
     #[arg(long)]

@@ -120,11 +120,74 @@ fn folders_are_compared_by_names() {
         }
     }
     let found = text(&diff(&folder, &["one", "two"]), 1);
-    assert!(found.contains("gone.RSS: only in one"), "{found}");
-    assert!(found.contains("Logic: equal"), "{found}");
+    assert!(found.contains("gone.RSS: only in one (removed)"), "{found}");
+    assert!(found.contains("two/MOTOR.rss: equal"), "{found}");
+    assert!(found.contains("Same bytes: one/gone.RSS, one/motor.RSS"), "{found}");
     std::fs::remove_file(folder.join("one/gone.RSS")).expect("the file");
     let json: Value = serde_json::from_str(&text(&diff(&folder, &["one", "two", "--json"]), 0)).expect("a document");
     assert_eq!(json["equal"], true);
+}
+
+#[test]
+fn files_of_other_names_are_found_by_their_content() {
+    let folder = folder("renamed", &[("texts/a.SLC", OLD), ("texts/b.SLC", NEW)]);
+    for name in ["one", "two"] {
+        std::fs::create_dir_all(folder.join(name)).expect("a folder");
+    }
+    let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
+    let copy = |from: &Path, to: &str| {
+        std::fs::copy(from, folder.join(to)).expect("a copy");
+    };
+    copy(&example("motor/motor.RSS"), "one/press.RSS");
+    copy(&example("motor/motor.RSS"), "two/mixer.RSS");
+    copy(&example("batch/batch.RSS"), "one/batch old.RSS");
+    // The batch program with one value of its data table changed, under another name.
+    let text =
+        |path: &Path| convert::open(&std::fs::read(path).expect("a file"), "x", rss::Mode::Strict).expect("reads");
+    let mut project = text(&example("batch/batch.RSS"));
+    let file = project.main.data_files.iter_mut().find(|file| file.file_type == ladder::FileType::N).expect("a file");
+    file.words[0] ^= 1;
+    let bytes = convert::to_rss::project_file(&project).expect("builds").file.write().expect("writes");
+    std::fs::write(folder.join("two/batch new.RSS"), bytes).expect("a file");
+    copy(&example("traffic_light/traffic_light.RSS"), "two/added.RSS");
+
+    let output = diff(&folder, &["one", "two", "--json"]);
+    let found = self::text(&output, 1);
+    let all: Vec<Value> = found.lines().map(|line| serde_json::from_str(line).expect("a document")).collect();
+    let named = |name: &str| all.iter().find(|v| v["new"] == name || v["file"] == name).unwrap_or(&Value::Null);
+    assert_eq!(
+        (&named("two/mixer.RSS")["paired_by"], &named("two/mixer.RSS")["equal"]),
+        (&"bytes".into(), &true.into())
+    );
+    assert_eq!(named("two/batch new.RSS")["paired_by"], "content");
+    assert_eq!(named("two/batch new.RSS")["values"].as_array().map(Vec::len), Some(1));
+    assert_eq!(named("two/added.RSS")["change"], "added");
+    let found = self::text(&diff(&folder, &["one", "two"]), 1);
+    assert!(
+        found.ends_with(
+            "1 files differ or were not readable, 1 equal, 2 of them under another name; 0 removed, 1 added\n"
+        ),
+        "{found}"
+    );
+}
+
+#[test]
+fn unified_text_has_rungs_with_their_neighbours_and_sections() {
+    let folder = folder("reviews", &[("old.SLC", OLD), ("new.SLC", NEW)]);
+    insta::assert_snapshot!("review", text(&diff(&folder, &["old.SLC", "new.SLC", "--unified"]), 1));
+    assert_eq!(text(&diff(&folder, &["old.SLC", "old.SLC", "--unified"]), 0), "");
+}
+
+#[test]
+fn a_project_equals_the_text_made_of_it() {
+    let folder = folder("text", &[]);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let project = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/traffic_light/traffic_light.RSS");
+    let mut export = Command::new(env!("CARGO_BIN_EXE_rungs"));
+    let export = export.args(["export", "--to", "slc", "--force", "-o"]).arg(folder.join("text.SLC")).arg(&project);
+    assert!(export.output().expect("the command starts").status.success());
+    let found = text(&diff(&folder, &[project.to_str().expect("a path"), "text.SLC", "--only", "logic,values"]), 0);
+    assert!(found.contains("were not compared"), "{found}");
 }
 
 #[test]

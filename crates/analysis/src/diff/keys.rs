@@ -26,7 +26,7 @@ impl RungKey {
 }
 
 /// Items that two sorted lists share, of 1000.
-pub(super) fn similarity(a: &[u32], b: &[u32]) -> u32 {
+pub(super) fn similarity<T: Ord>(a: &[T], b: &[T]) -> u32 {
     thousandths(shared(a, b), a.len() + b.len())
 }
 
@@ -36,7 +36,7 @@ fn thousandths(shared: usize, all: usize) -> u32 {
 }
 
 /// How many items two sorted lists share.
-fn shared(a: &[u32], b: &[u32]) -> usize {
+fn shared<T: Ord>(a: &[T], b: &[T]) -> usize {
     let (mut i, mut j, mut shared) = (0, 0, 0_usize);
     while let (Some(x), Some(y)) = (a.get(i), b.get(j)) {
         match x.cmp(y) {

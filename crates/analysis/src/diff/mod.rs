@@ -17,6 +17,7 @@ mod inside;
 mod keys;
 mod language;
 mod logic;
+mod profile;
 mod renames;
 mod rslogix;
 mod values;
@@ -26,6 +27,7 @@ use std::fmt;
 use ladder::{Documentation, Image};
 
 pub use inside::{Edit, EditKind, Word};
+pub use profile::Profile;
 
 /// One of the two programs.
 #[derive(Clone, Copy, Debug)]

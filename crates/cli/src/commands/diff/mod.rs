@@ -1,11 +1,13 @@
 //! `rungs diff`: what changed between two programs.
 
+mod folders;
 mod json;
 mod text;
+mod text_side;
+mod unified;
 
-use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use analysis::diff::{Difference, Side, compare};
 use convert::AnyProject;
@@ -13,8 +15,8 @@ use ladder::{Documentation, Image, Project, Severity};
 
 use super::{MOST_BYTES, diagnostics_json, file_name, mode, read_file};
 use crate::args::{DiffArguments, Section};
-use crate::files;
 use crate::output::{Error, Outcome, Printable, printable};
+use folders::Paired;
 
 /// Columns when nobody tells.
 const PIPE_WIDTH: usize = 100;
@@ -78,6 +80,7 @@ impl<'a> Program<'a> {
 struct Printer {
     sections: Sections,
     json: bool,
+    unified: bool,
     look: text::Look,
 }
 
@@ -90,9 +93,10 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
     let printer = Printer {
         sections: Sections::of(&arguments.only),
         json: arguments.json,
+        unified: arguments.unified,
         look: text::Look {
             width: width.clamp(render::MIN_WIDTH, render::MAX_WIDTH),
-            two_sided: !arguments.unified && (arguments.two_sided || width >= TWO_SIDED),
+            two_sided: arguments.two_sided || width >= TWO_SIDED,
             color: terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
         },
     };
@@ -106,8 +110,8 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
         }
         (None, true) => online(&arguments.old, arguments.strict, &printer, &mut out)?,
         (Some(new), false) => match (arguments.old.is_dir(), new.is_dir()) {
-            (false, false) => pair(&arguments.old, new, arguments.strict, &printer, &mut out)?,
-            (true, true) => folders(&arguments.old, new, arguments.strict, &printer, &mut out)?,
+            (false, false) => pair((&arguments.old, new), arguments.strict, None, &printer, &mut out)?,
+            (true, true) => folders::compare(&arguments.old, new, arguments.strict, &printer, &mut out)?,
             _ => return Err(Error::Use("expected two files or two folders, found one of each".to_owned())),
         },
     };
@@ -120,7 +124,7 @@ fn online(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
     if path.is_dir() {
         return Err(Error::Use("--online takes a file, not a folder".to_owned()));
     }
-    let Some(project) = opened(path, strict, printer, out)? else { return Ok(Outcome::Unreadable) };
+    let Some((project, _)) = opened(path, strict, printer, out)? else { return Ok(Outcome::Unreadable) };
     let Some(image) = &project.online else {
         return Err(Error::Use(format!("{}: the project holds no online image", path.display())));
     };
@@ -130,64 +134,40 @@ fn online(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
     let new = Program { name: name.to_string(), image: &project.main, documentation };
     let difference =
         compare(Side { image, documentation: None }, Side { image: &project.main, documentation: Some(documentation) });
-    printer.print(&old, &new, difference, &[&project], out)
+    printer.print((&old, &new), None, difference, &[&project], out)
 }
 
-fn pair(old: &Path, new: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Outcome, Error> {
+/// Two files; `how` they were found to belong together if their folders are compared.
+fn pair(
+    (old, new): (&Path, &Path),
+    strict: bool,
+    how: Option<Paired>,
+    printer: &Printer,
+    out: &mut dyn Write,
+) -> Result<Outcome, Error> {
     let (a, b) = (opened(old, strict, printer, out)?, opened(new, strict, printer, out)?);
-    let (Some(a), Some(b)) = (a, b) else { return Ok(Outcome::Unreadable) };
+    let (Some((a, a_is_text)), Some((b, b_is_text))) = (a, b) else { return Ok(Outcome::Unreadable) };
     let (x, y) = (Program::main(old, &a), Program::main(new, &b));
-    let difference = compare(
+    let mut difference = compare(
         Side { image: x.image, documentation: Some(x.documentation) },
         Side { image: y.image, documentation: Some(y.documentation) },
     );
-    let outcome = printer.print(&x, &y, difference, &[&a, &b], out);
+    text_side::leave_out(&mut difference, a_is_text, b_is_text);
+    let outcome = printer.print((&x, &y), how, difference, &[&a, &b], out);
     // Giving back two large models piece by piece would take longer than comparing them.
     std::mem::forget((a, b));
     outcome
 }
 
-/// Files of two folders by their names, upper and lower case alike.
-fn folders(old: &Path, new: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Outcome, Error> {
-    let mut pairs: BTreeMap<String, [Option<PathBuf>; 2]> = BTreeMap::new();
-    for (index, folder) in [old, new].into_iter().enumerate() {
-        let found = files::expand(&[folder.to_owned()], files::PROJECTS).map_err(Error::Use)?;
-        for path in found {
-            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().to_lowercase();
-            if let Some(place) = pairs.entry(name).or_default().get_mut(index) {
-                if place.is_some() {
-                    eprintln!(
-                        "{}: another file has this name in other letters; left out",
-                        printable(&path.display().to_string())
-                    );
-                }
-                place.get_or_insert(path);
-            }
-        }
-    }
-    let mut outcome = Outcome::Done;
-    for both in pairs.into_values() {
-        let found = match both {
-            [Some(a), Some(b)] => pair(&a, &b, strict, printer, out)?,
-            [a, b] => {
-                let side = if a.is_some() { old } else { new };
-                let Some(only) = a.or(b) else { continue };
-                printer.only_in(&only, side, out)?;
-                Outcome::Finding
-            }
-        };
-        outcome = outcome.max(found);
-    }
-    Ok(outcome)
-}
-
-/// A project, or `None` when it cannot be read, which is reported.
-fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Option<Project>, Error> {
-    let read = read_file(path, MOST_BYTES)
-        .and_then(|bytes| convert::open_any(&bytes, &file_name(path), mode(strict)).map_err(|error| error.to_string()));
+/// A project and whether it is rung text, or `None` when it cannot be read, which is reported.
+fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Option<(Project, bool)>, Error> {
+    let read = read_file(path, MOST_BYTES).and_then(|bytes| {
+        let project = convert::open_any(&bytes, &file_name(path), mode(strict)).map_err(|error| error.to_string())?;
+        Ok((project, text_side::is_text(&bytes)))
+    });
     let why = match read {
-        Ok(AnyProject::Rslogix(project)) => return Ok(Some(*project)),
-        Ok(AnyProject::Domore(_)) => {
+        Ok((AnyProject::Rslogix(project), is_text)) => return Ok(Some((*project, is_text))),
+        Ok((AnyProject::Domore(_), _)) => {
             let why = "programs of Do-more are not compared by this command; their text form is made for any text \
                        comparison";
             return Err(Error::Use(printable(&format!("{}: {why}", path.display()))));
@@ -204,8 +184,8 @@ fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
 impl Printer {
     fn print(
         &self,
-        old: &Program<'_>,
-        new: &Program<'_>,
+        (old, new): (&Program<'_>, &Program<'_>),
+        how: Option<Paired>,
         mut difference: Difference,
         projects: &[&Project],
         out: &mut dyn Write,
@@ -215,10 +195,27 @@ impl Printer {
         let broken: Vec<&&Project> = projects.iter().filter(broken).collect();
         if self.json {
             let mut document = json::describe(old, new, &difference);
+            if let Some(how) = how {
+                document["paired_by"] = how.as_str().into();
+            }
             document["diagnostics"] = projects.iter().map(|project| diagnostics_json(project)).collect();
             writeln!(out, "{document}")?;
         } else {
-            text::write(&self.look, self.sections, (old, new), &difference, out)?;
+            let renamed = match how {
+                Some(Paired::Bytes) => "the same bytes under another name",
+                Some(Paired::Content) => "found under another name by its content",
+                _ => "",
+            };
+            if !renamed.is_empty() {
+                writeln!(Printable(&mut *out), "# {} is now {}: {renamed}", old.name, new.name)?;
+            }
+            if self.unified {
+                unified::write(self.sections, (old, new), &difference, out)?;
+            } else if how.is_some() && difference.is_empty() {
+                writeln!(Printable(&mut *out), "{}: equal\n", new.name)?;
+            } else {
+                text::write(&self.look, self.sections, (old, new), &difference, out)?;
+            }
         }
         out.flush()?;
         for project in &broken {
@@ -238,16 +235,5 @@ impl Printer {
             (true, true) => Outcome::Done,
             (true, false) => Outcome::Finding,
         })
-    }
-
-    /// A file that has no counterpart of its name.
-    fn only_in(&self, path: &Path, folder: &Path, out: &mut dyn Write) -> Result<(), Error> {
-        let (file, folder) = (path.display().to_string(), folder.display().to_string());
-        if self.json {
-            writeln!(out, "{}", serde_json::json!({"file": file, "only_in": folder}))?;
-        } else {
-            writeln!(Printable(out), "{file}: only in {folder}\n")?;
-        }
-        Ok(())
     }
 }
