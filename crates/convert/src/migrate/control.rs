@@ -68,7 +68,7 @@ pub(super) fn zone_bit(context: &mut Context<'_>, file: u16) -> String {
 
 /// Appends a call.
 pub(super) fn append_call(e: &mut Emitter, block: &str) {
-    e.output("CALL", [block, "0x0", "DST511", "\"3\"", "\"3\""]);
+    e.output("CALL", std::iter::once(block).chain(super::forms::PLAIN_CALL));
 }
 
 fn flow<'c>(context: &'c Context<'_>) -> Converted<&'c Flow> {

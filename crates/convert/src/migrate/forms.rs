@@ -29,8 +29,9 @@ pub fn unconfirmed(project: &Project) -> Vec<Form> {
             Some(entry) => count(entry.mnemonic, entry.evidence.as_str()),
             None => count(&instruction.mnemonic, Evidence::Inferred.as_str()),
         }
-        if instruction.is("CALL") {
-            count("CALL: its flags, written 0x0", "inferred");
+        // An export calls a subroutine without parameters just so.
+        if instruction.is("CALL") && instruction.operands.iter().skip(1).ne(PLAIN_CALL) {
+            count("CALL with parameters: its flags", "inferred");
         }
         for operand in &instruction.operands {
             match Operand::parse(operand) {
@@ -74,6 +75,9 @@ fn of_address(address: &Address, count: &mut impl FnMut(&str, &'static str)) {
         count("writing or reading .Acc of a timer as an operand", "help");
     }
 }
+
+/// What stands behind the name of a subroutine that is called without parameters. (Designer export)
+pub(super) const PLAIN_CALL: [&str; 4] = ["0x0", "DST511", "\"3\"", "\"3\""];
 
 /// Operators and functions exports do not show.
 const OPERATORS: [(&str, &str, &str); 8] = [
