@@ -128,7 +128,12 @@ pub(super) fn compare<L: Language>(
                         if let Some(replaced) = replaced.as_deref_mut() {
                             L::note(x, y, index, (old.program, new.program), replaced);
                         }
-                        inside.edits.push(edit(EditKind::Operand, Some(index), text(&p, index), text(&q, index)));
+                        let (mut before, mut after) = (text(&p, index), text(&q, index));
+                        if before == after {
+                            before = L::meaning(old.program, x, index);
+                            after = L::meaning(new.program, y, index);
+                        }
+                        inside.edits.push(edit(EditKind::Operand, Some(index), before, after));
                     }
                 }
                 let settings = L::settings(x, y).into_iter();

@@ -52,6 +52,11 @@ pub(super) trait Language: Sized {
     /// The operands as they are written; empty text for one that is not there.
     fn operands(instruction: Self::Instruction<'_>) -> Vec<String>;
 
+    /// What an operand stands for, where it is written like another that means something else.
+    fn meaning(_program: &Self::Program, instruction: Self::Instruction<'_>, index: usize) -> String {
+        Self::operands(instruction).into_iter().nth(index).unwrap_or_default()
+    }
+
     /// Operands that are written alike, and how many there are.
     fn alike(a: Self::Instruction<'_>, b: Self::Instruction<'_>) -> (usize, usize);
 
@@ -110,7 +115,6 @@ pub(super) enum BlockId<'a> {
     /// RSLogix 500 gives numbers.
     Number(u16),
     /// Do-more gives names.
-    #[allow(dead_code, reason = "no dialect with names is compared yet")]
     Name(&'a str),
 }
 

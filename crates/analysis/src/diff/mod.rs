@@ -11,6 +11,7 @@
 
 mod align;
 mod configuration;
+mod do_more;
 mod documentation;
 mod files;
 mod inside;
@@ -26,6 +27,7 @@ use std::fmt;
 
 use ladder::{Documentation, Image};
 
+pub use do_more::compare_domore;
 pub use inside::{Edit, EditKind, Word};
 pub use profile::Profile;
 
@@ -51,6 +53,8 @@ pub struct Difference {
     pub documentation_left_out: bool,
     /// Contents of data files, and forces.
     pub values: Vec<ValueChange>,
+    /// The files hold no data: nothing is known of differences in it.
+    pub values_left_out: bool,
     /// Processor, I/O, channels, shape of data files, names of program files.
     pub configuration: Vec<Change>,
     /// Where the comparison was cut short, and what was left out of it.
@@ -98,10 +102,10 @@ impl fmt::Display for ChangeKind {
     }
 }
 
-/// A rung of a program file.
+/// A rung of a program file or code block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Place {
-    /// Program file number.
+    /// Program file number; of Do-more the place of the code block in the text, from 1.
     pub file: u16,
     /// Rung number, from 0.
     pub rung: usize,

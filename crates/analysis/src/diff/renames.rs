@@ -1,6 +1,7 @@
 //! Addresses that another one replaced throughout, and program files with another number.
 
 use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use foldhash::{HashMap, HashMapExt, HashSet, HashSetExt};
 use ladder::{Address, Expression, Image, Operand, Place};
@@ -137,9 +138,9 @@ fn same_part(old: &Address, new: &Address) -> bool {
 }
 
 /// What each address became when it became one thing only, at least twice, and nothing else became that.
-fn consistent(pairs: impl Iterator<Item = (Address, Address)>) -> Vec<(Address, (Address, usize))> {
-    let (mut became, mut order): (HashMap<Address, Option<(Address, usize)>>, _) = (HashMap::new(), Vec::new());
-    let mut from: HashMap<Address, Option<Address>> = HashMap::new();
+pub(super) fn consistent<A: Clone + Eq + Hash>(pairs: impl Iterator<Item = (A, A)>) -> Vec<(A, (A, usize))> {
+    let (mut became, mut order): (HashMap<A, Option<(A, usize)>>, _) = (HashMap::new(), Vec::new());
+    let mut from: HashMap<A, Option<A>> = HashMap::new();
     for (old, new) in pairs {
         let source = from.entry(new.clone()).or_insert_with(|| Some(old.clone()));
         if source.as_ref() != Some(&old) {
@@ -154,7 +155,7 @@ fn consistent(pairs: impl Iterator<Item = (Address, Address)>) -> Vec<(Address, 
             Some(other) => *other = None,
         }
     }
-    let single = |to: &Address| from.get(to).is_some_and(Option::is_some);
+    let single = |to: &A| from.get(to).is_some_and(Option::is_some);
     order
         .into_iter()
         .filter_map(|old| {
