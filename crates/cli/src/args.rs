@@ -199,6 +199,18 @@ pub enum Radix {
     Ascii,
 }
 
+impl From<Radix> for ladder::Radix {
+    fn from(radix: Radix) -> ladder::Radix {
+        match radix {
+            Radix::Dec => ladder::Radix::Decimal,
+            Radix::Hex => ladder::Radix::Hexadecimal,
+            Radix::Bin => ladder::Radix::Binary,
+            Radix::Oct => ladder::Radix::Octal,
+            Radix::Ascii => ladder::Radix::Ascii,
+        }
+    }
+}
+
 #[derive(Args)]
 pub struct AddressArguments {
     /// A project, then addresses or symbols; paths that exist are read as further projects

@@ -104,6 +104,25 @@ impl IoConfiguration {
         self.resolve(address).map(|point| point.word_index)
     }
 
+    /// Module and point of an I/O address in words, or that there is none; `None` for addresses that are
+    /// not of I/O or are decided at run time.
+    pub fn describe(&self, address: &Address) -> Option<String> {
+        let Some(point) = self.resolve(address) else {
+            let slot = address.element.number().filter(|_| address.file_type.has_slots() && address.is_direct())?;
+            return Some(match self.slots.iter().any(|of| of.number == slot) {
+                _ if self.unknown.is_some() => format!("slot {slot}, I/O configuration not understood"),
+                true => format!("slot {slot}, the module has no such word"),
+                false => format!("no module in slot {slot}"),
+            });
+        };
+        let module = &point.slot.module;
+        let name = module.catalog.as_deref().unwrap_or("unknown module");
+        let bit =
+            point.bit.map(|bit| format!(" point {}", u32::from(point.word) * 16 + u32::from(bit))).unwrap_or_default();
+        let beyond = if point.in_range { "" } else { " (the module has no such point)" };
+        Some(format!("slot {} {name}, word {}{bit}{beyond}", point.slot.number, point.word))
+    }
+
     /// The address of a word of file I or O, the way the program writes it.
     pub fn address_of(&self, file_type: FileType, word_index: u16) -> Option<Address> {
         let file = file_type.implied_file()?;

@@ -24,6 +24,7 @@ mod members;
 mod operand;
 mod processor;
 mod project;
+mod radix;
 mod rung;
 
 pub use address::{Address, AddressError, Place};
@@ -39,4 +40,5 @@ pub use members::{Member, member_by_name, member_name, members_of};
 pub use operand::Operand;
 pub use processor::{Confidence, Family, Processor};
 pub use project::{Image, Memory, ProgramFile, ProgramFileKind, Project, RevisionNote, Source};
+pub use radix::Radix;
 pub use rung::{Branch, Element, Instruction, MessageSetup, Mnemonic, Rung, Series};

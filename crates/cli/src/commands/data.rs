@@ -2,12 +2,12 @@
 
 use std::io::Write;
 
-use ladder::{Address, DataFile, FileType, Place, TimeBase, Value, format_float};
+use ladder::{Address, DataFile, FileType, Radix, Value, format_float};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
 use super::{Opened, diagnostics_json, each_project, one_line};
-use crate::args::{DataArguments, Radix};
+use crate::args::DataArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
 
@@ -36,8 +36,7 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
                 Choice::File(file) => print_file(opened, file, arguments.radix, out)?,
                 Choice::Address(address) => {
                     let value = opened.image().value_at(&address);
-                    let text =
-                        value.as_ref().map(|value| value_text(value, radix_of(address.file_type, arguments.radix)));
+                    let text = value.as_ref().map(|value| value.text(radix_of(address.file_type, arguments.radix)));
                     if value.is_none() {
                         eprintln!("{}: {address} is not in the data table", opened.path.display());
                         outcome = Outcome::Finding;
@@ -117,98 +116,28 @@ fn choices<'o>(opened: &'o Opened, wanted: &[String]) -> Vec<Choice<'o>> {
     wanted.iter().map(choose).collect()
 }
 
-/// The radix RSLogix shows a type in when nobody chose one.
-fn radix_of(file_type: FileType, chosen: Option<Radix>) -> Radix {
-    chosen.unwrap_or(match file_type {
-        FileType::O | FileType::I | FileType::B => Radix::Bin,
-        FileType::A => Radix::Ascii,
-        _ => Radix::Dec,
-    })
+/// The radix that was asked for, or the one of paper.
+fn radix_of(file_type: FileType, chosen: Option<crate::args::Radix>) -> Radix {
+    chosen.map_or_else(|| Radix::printed(file_type), Radix::from)
 }
 
-fn word(value: u16, radix: Radix) -> String {
-    match radix {
-        Radix::Dec => value.cast_signed().to_string(),
-        Radix::Hex => format!("{value:X}"),
-        Radix::Bin => format!("{value:016b}"),
-        Radix::Oct => format!("{value:o}"),
-        Radix::Ascii => value
-            .to_be_bytes()
-            .iter()
-            .map(|byte| match byte {
-                0x20..=0x7E => char::from(*byte).to_string(),
-                other => format!("\\{other:02X}"),
-            })
-            .collect(),
-    }
-}
-
-fn value_text(value: &Value, radix: Radix) -> String {
-    match value {
-        Value::Bit(bit) => u8::from(*bit).to_string(),
-        Value::Word(value) => word(value.cast_unsigned(), radix),
-        Value::Long(value) => match radix {
-            Radix::Hex => format!("{value:X}"),
-            Radix::Bin => format!("{value:032b}"),
-            Radix::Oct => format!("{value:o}"),
-            _ => value.to_string(),
-        },
-        Value::Float(value) => format_float(*value),
-        Value::Text(text) => format!("\"{text}\""),
-        Value::Words(words) => words.iter().map(|value| word(*value, radix)).collect::<Vec<_>>().join(" "),
-        Value::Timer(_) | Value::Counter(_) | Value::Control(_) => {
-            let (names, cells) = structure(value);
-            names.iter().zip(cells).map(|(name, cell)| format!("{name} {cell}")).collect::<Vec<_>>().join("  ")
-        }
-    }
-}
-
-/// Column names and cells of a structured element, in the order of printed tables.
-fn structure(value: &Value) -> (&'static [&'static str], Vec<String>) {
-    let bits = |control: u16, count: u16| (0..count).map(move |n| (control >> (15 - n) & 1).to_string());
-    match value {
-        Value::Timer(timer) => {
-            let base = timer.base().map_or("?", TimeBase::text).to_owned();
-            let values = [base, timer.pre.to_string(), timer.acc.to_string()];
-            (&["EN", "TT", "DN", "BASE", "PRE", "ACC"], bits(timer.control, 3).chain(values).collect())
-        }
-        Value::Counter(counter) => {
-            let values = [counter.pre.to_string(), counter.acc.to_string()];
-            (&["CU", "CD", "DN", "OV", "UN", "UA", "PRE", "ACC"], bits(counter.control, 6).chain(values).collect())
-        }
-        Value::Control(control) => {
-            let values = [control.len.to_string(), control.pos.to_string()];
-            (
-                &["EN", "EU", "DN", "EM", "ER", "UL", "IN", "FD", "LEN", "POS"],
-                bits(control.control, 8).chain(values).collect(),
-            )
-        }
-        _ => (&[], Vec::new()),
-    }
-}
-
-/// The address of an element, the way the program writes it.
-fn element_address(opened: &Opened, file: &DataFile, element: u16) -> Address {
-    let io = &opened.image().io;
-    let of_slot = file.file_type.has_slots().then(|| io.address_of(file.file_type, element)).flatten();
-    of_slot.unwrap_or_else(|| Address {
-        file: Place::Number(file.number),
-        ..Address::element(file.file_type, file.number, element)
-    })
-}
-
-fn print_file(opened: &Opened, file: &DataFile, radix: Option<Radix>, out: &mut dyn Write) -> Result<(), Error> {
+fn print_file(
+    opened: &Opened,
+    file: &DataFile,
+    radix: Option<crate::args::Radix>,
+    out: &mut dyn Write,
+) -> Result<(), Error> {
     let radix = radix_of(file.file_type, radix);
     let name = [file.name.as_str(), file.description.as_str()].into_iter().filter(|part| !part.is_empty());
     let name = name.collect::<Vec<_>>().join(" - ");
     writeln!(out, "\nData file {}  {}  ({} elements)", file.label(), name, file.elements)?;
     let symbol = |element: u16| {
-        let address = element_address(opened, file, element);
+        let address = file.element_address(element, &opened.image().io);
         let shown = opened.documentation().shown(&(&address).into(), "");
         shown.symbol.unwrap_or_else(|| one_line(&shown.description))
     };
     let first = file.value(0);
-    let structured = first.as_ref().map(structure).filter(|(names, _)| !names.is_empty());
+    let structured = first.as_ref().map(Value::columns).filter(|(names, _)| !names.is_empty());
     let mut table = match (&structured, file.words_per_element, file.file_type) {
         (Some((names, _)), _, _) => {
             let mut headings = vec!["Address"];
@@ -222,13 +151,13 @@ fn print_file(opened: &Opened, file: &DataFile, radix: Option<Radix>, out: &mut 
     };
     for element in 0..file.elements {
         let Some(value) = file.value(element) else { continue };
-        let mut row = vec![element_address(opened, file, element).to_string()];
+        let mut row = vec![file.element_address(element, &opened.image().io).to_string()];
         match &structured {
-            Some(_) => row.extend(structure(&value).1),
-            None => row.push(value_text(&value, radix)),
+            Some(_) => row.extend(value.columns().1),
+            None => row.push(value.text(radix)),
         }
         if let Some(force) = file.forces.get(usize::from(element)) {
-            let mask = |bits: u16| if bits == 0 { String::new() } else { word(bits, Radix::Bin) };
+            let mask = |bits: u16| if bits == 0 { String::new() } else { Radix::Binary.word(bits) };
             row.extend([mask(force.on), mask(!force.off)]);
         }
         row.push(symbol(element));
@@ -239,7 +168,7 @@ fn print_file(opened: &Opened, file: &DataFile, radix: Option<Radix>, out: &mut 
 
 /// The value of an element in JSON: numbers, strings, an object for a structured element.
 fn value_json(value: &Value) -> serde_json::Value {
-    let (names, cells) = structure(value);
+    let (names, cells) = value.columns();
     // All cells but the time base are integers.
     let cell = |cell: String| cell.parse::<i64>().map_or_else(|_| json!(cell), |number| json!(number));
     match value {
@@ -291,7 +220,7 @@ impl Serialize for Values<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq((0..self.file.elements).filter_map(|element| {
             let value = value_json(&self.file.value(element)?);
-            let address = element_address(self.opened, self.file, element).to_string();
+            let address = self.file.element_address(element, &self.opened.image().io).to_string();
             Some(json!({"address": address, "value": value}))
         }))
     }

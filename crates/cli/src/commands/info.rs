@@ -5,6 +5,7 @@ use std::io::Write;
 
 use analysis::{Coverage, CrossReference};
 use ladder::{FileType, Image, ProgramFileKind, Severity};
+use report::words;
 use serde_json::{Value, json};
 
 use super::{Opened, domore, each_dialect, write_json};
@@ -141,32 +142,10 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
     let mut line = |name: &str, value: &str| {
         if value.is_empty() { Ok(()) } else { writeln!(out, "  {name:<18}{value}") }
     };
-    let unknown = || match processor.model {
-        Some(code) => format!("unknown (model code {code}); its bytes are kept"),
-        None => "unknown".to_owned(),
-    };
-    let name = match (&processor.catalog, &processor.name) {
-        (Some(catalog), Some(name)) => {
-            format!("{catalog}  {name}  ({}: {})", processor.family_confidence.as_str(), processor.evidence)
-        }
-        // A text can name the catalogue number alone.
-        (Some(catalog), None) if processor.model.is_none() => {
-            let (family, confidence) = (processor.family, processor.family_confidence.as_str());
-            format!("{catalog}  {family}, model not told  ({confidence}: {})", processor.evidence)
-        }
-        _ => unknown(),
-    };
-    line("Processor", &name)?;
+    line("Processor", &words::processor(processor))?;
     line("Processor name", &processor.project_name)?;
     line("Program ID", &processor.program_id.map(|id| format!("{id:x}")).unwrap_or_default())?;
-    let saved_by = match source.application.as_str() {
-        // Our own writer states the version whose format it follows.
-        ours if ours == "rungs" || ours.starts_with("rungs, ") => {
-            format!("{ours}, in the format of RSLogix {}", source.saved_by)
-        }
-        application => [application, source.saved_by.as_str()].join(" ").trim().to_owned(),
-    };
-    line("Saved by", &saved_by)?;
+    line("Saved by", &words::saved_by(source))?;
     line("Saved at", source.saved_at.as_deref().unwrap_or(""))?;
     line("Images", &images(opened).join(", "))?;
     line("Route", &processor.route)?;
@@ -180,13 +159,7 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
         let text = if image.is_edited() { format!("*  (not verified; at the last verify: {text})") } else { text };
         line("Memory", &text)?;
     }
-    let protection = match (processor.deny_future_access, processor.password_fields_used) {
-        (Some(true), _) => "future access is denied (S:1/14)",
-        (_, Some(true)) => "a field that may hold a password is in use; its content is not shown",
-        (Some(false), Some(false)) => "none found",
-        _ => "unknown",
-    };
-    line("Protection", protection)?;
+    line("Protection", words::protection(processor))?;
     print_io(image, out)?;
     print_channels(image, out)?;
     print_program_files(image, out)?;
@@ -214,16 +187,12 @@ fn print_io(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
     }
     let mut table = Columns::new(&["Slot", "Module", "Description", "Inputs", "Outputs", "Identity", "Evidence"]);
     for slot in &image.io.slots {
-        let points = |range: &ladder::IoRange, letter: &str| match range.words {
-            0 => String::new(),
-            words => format!("{letter}:{}.0-{} ({} points)", slot.number, words - 1, range.bits),
-        };
         table.row([
             slot.number.to_string(),
             slot.module.catalog.clone().unwrap_or_else(|| "unknown".to_owned()),
             slot.module.description.clone(),
-            points(&slot.inputs, "I"),
-            points(&slot.outputs, "O"),
+            words::points(slot, &slot.inputs, "I"),
+            words::points(slot, &slot.outputs, "O"),
             slot.module.identity.clone(),
             slot.module.confidence.as_str().to_owned(),
         ]);
@@ -254,9 +223,8 @@ fn print_program_files(image: &Image, out: &mut dyn Write) -> Result<(), Error> 
     writeln!(out, "\n  Program files")?;
     let mut table = Columns::new(&["Name", "Number", "Type", "Rungs", "Description"]);
     for file in image.program_files.iter().filter(|file| file.kind != ProgramFileKind::Unused) {
-        let name = if file.number == 0 && file.name.is_empty() { "[SYSTEM]".to_owned() } else { file.name.clone() };
         table.row([
-            name,
+            words::file_name(file),
             file.number.to_string(),
             file.kind.as_str().to_owned(),
             file.rungs.len().to_string(),
@@ -270,19 +238,13 @@ fn print_data_files(image: &Image, out: &mut dyn Write) -> Result<(), Error> {
     writeln!(out, "\n  Data files")?;
     let mut table = Columns::new(&["Name", "Number", "Type", "Words", "Elements", "Last", "Description"]);
     for file in data_files(image) {
-        let last = match (file.elements, file.file_type.has_slots()) {
-            (0, _) => String::new(),
-            // Words of O and I are counted through all slots, as printed file lists do.
-            (count, true) => format!("{}:{}", file.file_type, count - 1),
-            (count, false) => ladder::Address::element(file.file_type, file.number, count - 1).to_string(),
-        };
         table.row([
             file.name.clone(),
             file.number.to_string(),
             file.file_type.to_string(),
             file.listed_words().to_string(),
             file.elements.to_string(),
-            last,
+            words::last_element(file),
             file.description.clone() + if file.has_forces() { "  [FORCED]" } else { "" },
         ]);
     }

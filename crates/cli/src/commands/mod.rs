@@ -25,6 +25,7 @@ use std::path::{Path, PathBuf};
 
 use convert::AnyProject;
 use ladder::{Documentation, Image, Project, Severity};
+use report::words::one_line;
 use rss::Mode;
 
 use crate::args::{Arguments, Command, ImageChoice, Input};
@@ -271,11 +272,6 @@ fn write_json(opened: &Opened, mut document: serde_json::Value, out: &mut dyn Wr
 fn diagnostics_json(project: &Project) -> serde_json::Value {
     let one = |d: &ladder::Diagnostic| serde_json::json!({"severity": d.severity.as_str(), "place": d.place, "message": d.message});
     project.diagnostics.iter().map(one).collect()
-}
-
-/// `first line / second line` of a description, for one table cell.
-fn one_line(lines: &[String]) -> String {
-    lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Rungs, then how many more there are.

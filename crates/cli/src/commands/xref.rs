@@ -109,7 +109,7 @@ impl Report<'_> {
                     address: group.address.to_string(),
                     symbol,
                     description,
-                    module: self.module(&group.address),
+                    module: self.opened.image().io.describe(&group.address),
                     accesses: group.accesses.iter().map(AccessRow::of).collect(),
                     left_out: group.left_out,
                 };
@@ -163,25 +163,6 @@ impl Report<'_> {
         self.calls.files.iter().filter(|file| file.called_by.is_empty() && file.number != 2)
     }
 
-    /// Module and point of an I/O address, or that there is none.
-    fn module(&self, address: &Address) -> Option<String> {
-        let io = &self.opened.image().io;
-        let Some(point) = io.resolve(address) else {
-            let slot = address.element.number().filter(|_| address.file_type.has_slots() && address.is_direct())?;
-            return Some(match io.slots.iter().any(|of| of.number == slot) {
-                _ if io.unknown.is_some() => format!("slot {slot}, I/O configuration not understood"),
-                true => format!("slot {slot}, the module has no such word"),
-                false => format!("no module in slot {slot}"),
-            });
-        };
-        let module = &point.slot.module;
-        let name = module.catalog.as_deref().unwrap_or("unknown module");
-        let bit =
-            point.bit.map(|bit| format!(" point {}", u32::from(point.word) * 16 + u32::from(bit))).unwrap_or_default();
-        let beyond = if point.in_range { "" } else { " (the module has no such point)" };
-        Some(format!("slot {} {name}, word {}{bit}{beyond}", point.slot.number, point.word))
-    }
-
     fn print(&self, only_findings: bool, out: &mut dyn Write) -> Result<(), Error> {
         writeln!(out, "{}", self.opened.title())?;
         if !only_findings {
@@ -198,7 +179,11 @@ impl Report<'_> {
 
     fn print_group(&self, group: &Group<'_>, out: &mut dyn Write) -> Result<(), Error> {
         let (symbol, description) = self.documentation(&group.address);
-        let parts = [symbol.unwrap_or_default(), description, self.module(&group.address).unwrap_or_default()];
+        let parts = [
+            symbol.unwrap_or_default(),
+            description,
+            self.opened.image().io.describe(&group.address).unwrap_or_default(),
+        ];
         let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         writeln!(out, "{}  {}", group.address, parts.join("  -  "))?;
         let mut table = Columns::new(&["Rung", "Does", "Instruction", "Operand", "As", "Touches", ""]);
