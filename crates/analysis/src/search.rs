@@ -1,8 +1,13 @@
 //! Search in a program: an address or symbol, an instruction with wildcards, a text, a regular expression.
 //!
+//! One query works on programs of every dialect: each decides for itself whether its first word is a mnemonic. A
+//! text of several words that begins like an instruction (`add water`) is looked for as a text if no instruction matches.
+//!
 //! A pattern is a mnemonic and one word per operand, in the order of the box: `TON * 0.01 >=500 *`. `*` and `?` stand
 //! for any characters, `>=500`, `<5`, `=3`, `!=0` compare numbers; operands not given can be anything. Preset and
 //! accumulated value of a verified timer or counter are those of the data table, which the processor works with.
+
+mod do_more;
 
 use instr::Kind;
 use ladder::{Address, Documentation, Image, Instruction, Number, Operand, Value};
@@ -11,6 +16,8 @@ use regex::{Regex, RegexBuilder};
 use crate::checks::context_form;
 use crate::location::{Location, instructions};
 use crate::xref::{CrossReference, Found};
+
+pub use do_more::search_domore;
 
 /// Hits listed of one program.
 pub const MAX_HITS: usize = 10_000;
@@ -43,10 +50,12 @@ impl Query {
 /// A place where something was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hit {
-    /// The rung; `None` for documentation that belongs to no rung.
+    /// The rung; `None` for documentation that belongs to no rung. Of Do-more its file is the place of the code block
+    /// in the text, from 1.
     pub location: Option<Location>,
     /// `instruction`, `read`, `write`, `read/write`, `comment`, `title`, `symbol`, `description`, `instruction comment`,
-    /// `program file`, `data file`, `detached comment`.
+    /// `program file`, `data file`, `detached comment`; of Do-more also `nickname`, `code block`, `memory`, `device` and
+    /// the roles of its cross reference.
     pub kind: &'static str,
     /// The instruction, address or text.
     pub text: String,
@@ -77,11 +86,13 @@ pub fn search(image: &Image, documentation: &Documentation, query: &Query) -> Hi
     match query {
         Query::Regex(regex) => texts(image, documentation, true, &|text| regex.is_match(text), &mut hits),
         Query::Any(text) => {
-            if let Some(pattern) = Pattern::parse(text) {
-                for (at, it) in instructions(image).filter(|(_, it)| pattern.matches(image, it)) {
+            if let Some(pattern) = Pattern::parse(text, |word| instr::by_mnemonic(word).is_some()) {
+                for (at, it) in instructions(image).filter(|(_, it)| matches(&pattern, image, it)) {
                     hits.add(Some(at), "instruction", || written(it));
                 }
-            } else if !addresses(image, documentation, text, &mut hits) {
+            }
+            let is_mnemonic = instr::by_mnemonic(&text.to_ascii_uppercase()).is_some();
+            if !is_mnemonic && hits.list.is_empty() && !addresses(image, documentation, text, &mut hits) {
                 let lower = text.to_lowercase();
                 texts(image, documentation, false, &|text| text.to_lowercase().contains(&lower), &mut hits);
             }
@@ -201,20 +212,20 @@ const COMPARISONS: &[(&str, Comparison)] =
 
 impl<'t> Pattern<'t> {
     /// `None` when the first word is no mnemonic and no wildcard before operands.
-    fn parse(text: &'t str) -> Option<Pattern<'t>> {
+    fn parse(text: &'t str, is_mnemonic: impl Fn(&str) -> bool) -> Option<Pattern<'t>> {
         let mut words = text.split_whitespace();
         let mnemonic = words.next()?;
         let operands: Vec<Test<'t>> = words.map(Test::parse).collect();
-        let known = instr::by_mnemonic(&mnemonic.to_ascii_uppercase()).is_some();
+        let known = is_mnemonic(&mnemonic.to_ascii_uppercase());
         let wild = mnemonic.contains('*') && mnemonic.bytes().all(|b| b.is_ascii_alphabetic() || b == b'*');
         (known || (wild && !operands.is_empty())).then_some(Pattern { mnemonic, operands })
     }
+}
 
-    fn matches(&self, image: &Image, it: &Instruction) -> bool {
-        like(self.mnemonic, &it.mnemonic.to_string())
-            && self.operands.len() <= it.operands.len()
-            && self.operands.iter().enumerate().all(|(index, test)| test.holds(image, it, index))
-    }
+fn matches(pattern: &Pattern<'_>, image: &Image, it: &Instruction) -> bool {
+    like(pattern.mnemonic, &it.mnemonic.to_string())
+        && pattern.operands.len() <= it.operands.len()
+        && pattern.operands.iter().enumerate().all(|(index, test)| holds(test, image, it, index))
 }
 
 impl<'t> Test<'t> {
@@ -226,20 +237,23 @@ impl<'t> Test<'t> {
         }
         Test::Like(word)
     }
+}
 
-    fn holds(&self, image: &Image, it: &Instruction, index: usize) -> bool {
-        let Some(operand) = it.operands.get(index) else { return false };
-        let number = number(image, it, index, operand);
-        match self {
-            Test::Compare(compare, wanted) => number.is_some_and(|number| compare(&number, wanted)),
-            Test::Like(word) => {
-                let same = word.parse::<f64>().is_ok_and(|wanted| number == Some(wanted));
-                // `B3/17` and `B3:1/1` are one address.
-                let address = || Address::parse(word).is_ok_and(|address| operand.address() == Some(&address));
-                let shown = number.filter(|_| operand.constant().is_some_and(|it| it.as_integer().is_some()));
-                let text = shown.map_or_else(|| operand.to_string(), |number| number.to_string());
-                same || address() || like(word, &operand.to_string()) || like(word, &text)
-            }
+fn holds(test: &Test<'_>, image: &Image, it: &Instruction, index: usize) -> bool {
+    let Some(operand) = it.operands.get(index) else { return false };
+    let number = number(image, it, index, operand);
+    match test {
+        Test::Compare(compare, wanted) => number.is_some_and(|number| compare(&number, wanted)),
+        Test::Like(word) => {
+            let same = word.parse::<f64>().is_ok_and(|wanted| number == Some(wanted));
+            // `B3/17` and `B3:1/1` are one address.
+            let address = || Address::parse(word).is_ok_and(|address| operand.address() == Some(&address));
+            let shown = number.filter(|_| operand.constant().is_some_and(|it| it.as_integer().is_some()));
+            let text = shown.map_or_else(|| operand.to_string(), |number| number.to_string());
+            // What a box showed before the data table got another value.
+            let stale =
+                shown.is_some() && shown != operand.constant().and_then(|it| it.as_integer()).map(|it| it as f64);
+            same || address() || (!stale && like(word, &operand.to_string())) || like(word, &text)
         }
     }
 }
