@@ -1,13 +1,19 @@
 //! Which files to work on: several paths, folders, and paths mixed with addresses.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Ending of projects picked up from folders. SLC text mostly lies beside the project it belongs to,
-/// which must not be listed twice: name it to read it.
+/// Ending of projects picked up from folders, texts of Do-more Designer (`.txt`, by their content) besides. SLC text
+/// mostly lies beside the project it belongs to, which must not be listed twice: name it to read it.
 pub const PROJECTS: &str = "rss";
+
+/// Ending of texts that Designer exports; other texts have it too.
+const DESIGNER: &str = "txt";
+
+/// Bytes of a text that tell whose it is.
+const HEAD: u64 = 16 << 10;
 
 /// Ending of scenarios.
 pub const SCENARIOS: &str = "toml";
@@ -51,7 +57,7 @@ fn collect(folder: &Path, ending: &str, files: &mut Vec<PathBuf>, depth: usize) 
         let Ok(kind) = entry.file_type() else { continue };
         if kind.is_dir() && depth < MAX_DEPTH {
             collect(&path, ending, files, depth + 1)?;
-        } else if path.is_file() && has_ending(&path, ending) {
+        } else if path.is_file() && (has_ending(&path, ending) || (ending == PROJECTS && is_designer(&path))) {
             files.push(path);
         }
     }
@@ -60,6 +66,14 @@ fn collect(folder: &Path, ending: &str, files: &mut Vec<PathBuf>, depth: usize) 
 
 fn has_ending(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
+}
+
+/// A text for Do-more Designer.
+fn is_designer(path: &Path) -> bool {
+    let mut head = Vec::new();
+    has_ending(path, DESIGNER)
+        && std::fs::File::open(path).is_ok_and(|file| file.take(HEAD).read_to_end(&mut head).is_ok())
+        && convert::designer::is_designer(&head)
 }
 
 /// Splits `FILE [ADDRESS ..]`: the first word is a file, later ones are if such a path exists.

@@ -74,7 +74,11 @@ fn other_tools_get_json_and_tables() {
 #[test]
 fn what_does_not_fit_says_so() {
     for (arguments, code, says) in [
-        (vec!["data", FILE], 3, "expected a project of RSLogix 500, found one of Do-more Designer"),
+        (vec!["check", FILE], 2, "rungs verify"),
+        (vec!["data", FILE, "Nothing"], 1, "no memory block"),
+        (vec!["timers", FILE, "T99"], 1, "no instruction of this program"),
+        (vec!["diff", FILE, "motor/motor.RSS"], 2, "rungs prove"),
+        (vec!["diff", FILE, "--online"], 2, "no online image"),
         (vec!["export", FILE, "--to", "slc"], 2, "no SLC text"),
         (vec!["export", "motor/motor.RSS", "--to", "domore"], 2, "rungs migrate"),
         (vec!["show", FILE, "--file", "2"], 1, "--block NAME"),
@@ -85,6 +89,66 @@ fn what_does_not_fit_says_so() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
         assert!(message.contains(says), "{arguments:?}: {message}");
     }
+}
+
+#[test]
+fn timers_memory_and_search_answer_for_it() {
+    insta::assert_snapshot!("domore_timers", text(&["timers", FILE]));
+    let timer = &json(&["timers", "--json", FILE, "RunUp"])["timers"][0];
+    assert_eq!((&timer["preset_seconds"], &timer["read_by"][0]["operand"]), (&"2.5".into(), &"T0.Done".into()));
+    let memory = json(&["data", "--json", FILE]);
+    assert!(memory["memory"].as_array().is_some_and(Vec::is_empty));
+    assert_eq!(json(&["data", "--json", FILE, "ct"])["memory"][0]["count"], 256);
+    // A folder with programs of both dialects.
+    let all = text(&["search", "--no-draw", "TMR *", "."]);
+    assert!(all.contains("filling.txt: 1 found") && all.contains("Fill:2  instruction  TMR T0 2500"), "{all}");
+    let hit = &json(&["search", "--json", "Bottle", FILE])["hits"][0];
+    assert_eq!(
+        (&hit["rung"]["code_block"], &hit["rung"]["rung"], &hit["kind"]),
+        (&"Fill".into(), &3.into(), &"read".into())
+    );
+    assert!(text(&["search", "start button", FILE]).contains("description  X0 Start start button panel"));
+    assert!(text(&["search", "T0", FILE]).contains("0002"), "the rung is drawn");
+}
+
+#[test]
+fn differences_name_code_blocks() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("domore_diff");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let old = std::fs::read_to_string(examples().join(FILE)).expect("the example");
+    let new = old.replacen("OUT\tY0", "OUT\tY7", 1).replacen("TMR\tT0\t2500", "AND\tC77\nTMR\tT0\t2600", 1).replacen(
+        "belt motor",
+        "<b>belt</b>",
+        1,
+    );
+    let path = folder.join("new.txt");
+    std::fs::write(&path, new).expect("written");
+    let path = path.to_str().expect("a path");
+    let document = rungs(&["diff", "--json", FILE, path]);
+    assert_eq!(document.status.code(), Some(1));
+    let document: Value = serde_json::from_slice(&document.stdout).expect("one JSON document");
+    let rung = |row: &Value| {
+        (
+            row["kind"].clone(),
+            row["file"].clone(),
+            row["code_block"].clone(),
+            row["old_rung"].clone(),
+            row["new_rung"].clone(),
+        )
+    };
+    let rows: Vec<_> = document["logic"].as_array().expect("rows").iter().map(rung).collect();
+    let expected = |number: u32| ("changed".into(), 2.into(), "Fill".into(), number.into(), number.into());
+    assert_eq!(rows, [expected(1), expected(2)]);
+    assert_eq!(document["logic"][1]["edits"][0]["new"], "AND C77");
+    assert_eq!(document["documentation"][0]["name"], "Y0");
+    let shown = String::from_utf8(rungs(&["diff", FILE, path]).stdout).expect("text");
+    assert!(shown.contains("Code block Fill rung 2 changed") && shown.contains("Values: not compared"), "{shown}");
+    assert!(shown.contains("+ <b>belt</b>"), "{shown}");
+    assert!(String::from_utf8_lossy(&rungs(&["diff", FILE, path, "--two-sided"]).stdout).contains("0002"));
+    for only in ["values", "configuration"] {
+        assert_eq!(rungs(&["diff", FILE, path, "--only", only]).status.code(), Some(0), "{only}");
+    }
+    assert_eq!(rungs(&["diff", FILE, FILE]).status.code(), Some(0));
 }
 
 #[test]

@@ -15,6 +15,7 @@
 //! ```
 
 pub mod anchor;
+pub mod diff;
 pub mod model;
 mod options;
 mod rslogix;

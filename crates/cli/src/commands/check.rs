@@ -8,9 +8,9 @@ use analysis::Location;
 use analysis::checks::{self, Check, Finding, Report, Rules, Severity};
 use serde_json::{Value, json};
 
-use super::{Opened, each_project, file_name, read_file, write_json};
+use super::{Opened, each_dialect, file_name, read_file, write_json};
 use crate::args::{CheckArguments, CheckLevel};
-use crate::output::{Error, Outcome, Printable};
+use crate::output::{Error, Outcome, Printable, printable};
 
 /// Suppression file looked for beside a project.
 const RULES: &str = ".rungs-check.toml";
@@ -41,7 +41,7 @@ pub fn run(arguments: &CheckArguments) -> Result<Outcome, Error> {
         on && !named(&arguments.skip) && check.severity >= lowest
     };
     let style = super::drawing_style(None);
-    each_project(&arguments.files, &arguments.input, |opened, out| {
+    let slc = |opened: &Opened, out: &mut dyn Write| {
         let mut rules = given.clone();
         let beside = opened.path.parent().unwrap_or(Path::new("")).join(RULES);
         if beside.is_file() {
@@ -56,6 +56,20 @@ pub fn run(arguments: &CheckArguments) -> Result<Outcome, Error> {
         }
         let failed = report.findings.iter().any(|it| it.check.severity == Severity::Error);
         Ok(if failed { Outcome::Finding } else { Outcome::Done })
+    };
+    each_dialect(&arguments.files, &arguments.input, slc, |opened, out| {
+        let why = "the checks are about programs of RSLogix 500; of a Do-more program `rungs verify` checks every rung and \
+                   `rungs xref --findings` lists what is only read or only written";
+        if arguments.input.json {
+            opened.write_json(json!({"file": opened.name(), "error": why}), out)?;
+        }
+        let message = printable(&format!("{}: {why}", opened.name()));
+        if arguments.files.contains(&opened.path) {
+            return Err(Error::Use(message));
+        }
+        // Found in a folder beside others.
+        eprintln!("{message}");
+        Ok(Outcome::Done)
     })
 }
 

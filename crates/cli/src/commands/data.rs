@@ -6,14 +6,14 @@ use ladder::{Address, DataFile, FileType, Radix, Value, format_float};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-use super::{Opened, diagnostics_json, each_project, one_line};
+use super::{Opened, diagnostics_json, domore, each_dialect, one_line};
 use crate::args::DataArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
-    each_project(&paths, &arguments.input, |opened, out| {
+    let slc = |opened: &Opened, out: &mut dyn Write| {
         // JSON has its own way to spell control characters.
         let mut printable = Printable(&mut *out);
         let out: &mut dyn Write = if arguments.input.json { out } else { &mut printable };
@@ -72,7 +72,8 @@ pub fn run(arguments: &DataArguments) -> Result<Outcome, Error> {
             writeln!(out)?;
         }
         Ok(outcome)
-    })
+    };
+    each_dialect(&paths, &arguments.input, slc, |opened, out| domore::data(opened, &wanted, arguments.input.json, out))
 }
 
 #[derive(Serialize)]

@@ -132,30 +132,8 @@ fn mode(strict: bool) -> Mode {
     if strict { Mode::Strict } else { Mode::Permissive }
 }
 
-/// Opens one project after the other and hands each to `work`. What cannot be read is reported and
-/// the rest goes on; so do findings of the reader.
-fn each_project(
-    paths: &[PathBuf],
-    input: &Input,
-    mut work: impl FnMut(&Opened, &mut dyn Write) -> Result<Outcome, Error>,
-) -> Result<Outcome, Error> {
-    each_file(paths, input.json, |path, is_last, out| {
-        let project = match open(path, mode(input.strict)) {
-            Ok(project) => project,
-            Err(why) => return Ok(Err(why)),
-        };
-        let opened = Opened { path: path.to_owned(), project, choice: input.image };
-        let outcome = one_project(&opened, input.json, out, &mut work)?;
-        if is_last {
-            // The process ends next. Giving back a large model piece by piece would take a tenth of
-            // the whole run.
-            std::mem::forget(opened);
-        }
-        Ok(Ok(outcome))
-    })
-}
-
-/// As [`each_project`], with projects of Do-more handed to `domore`.
+/// Opens one project after the other and hands each to `work`, those of Do-more to `domore`. What cannot be read is
+/// reported and the rest goes on; so do findings of the reader.
 fn each_dialect(
     paths: &[PathBuf],
     input: &Input,
@@ -173,6 +151,8 @@ fn each_dialect(
                 let opened = Opened { path, project: *project, choice: input.image };
                 let outcome = one_project(&opened, input.json, out, &mut work)?;
                 if is_last {
+                    // The process ends next. Giving back a large model piece by piece would take a tenth of
+                    // the whole run.
                     std::mem::forget(opened);
                 }
                 Ok(Ok(outcome))

@@ -11,14 +11,14 @@ use ladder::{Address, TimeBase};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{Opened, diagnostics_json, each_project, more, one_line, places};
+use super::{Opened, diagnostics_json, domore, each_dialect, more, one_line, places};
 use crate::args::AddressArguments;
 use crate::files;
 use crate::output::{Columns, Error, Outcome, Printable};
 
 pub fn run(arguments: &AddressArguments) -> Result<Outcome, Error> {
     let (paths, wanted) = files::split(&arguments.files);
-    each_project(&paths, &arguments.input, |opened, out| {
+    let slc = |opened: &Opened, out: &mut dyn Write| {
         let xref = CrossReference::build(opened.image(), opened.documentation());
         let mut report = TimerReport::build(opened.image(), &xref);
         if !wanted.is_empty() {
@@ -38,6 +38,9 @@ pub fn run(arguments: &AddressArguments) -> Result<Outcome, Error> {
             }
         }
         Ok(outcome)
+    };
+    each_dialect(&paths, &arguments.input, slc, |opened, out| {
+        domore::timers(opened, &wanted, arguments.input.json, out)
     })
 }
 

@@ -3,12 +3,10 @@
 use analysis::diff::{Change, Difference, Edit, LogicChange, Place, Rename, RungChange, ValueChange, Word};
 use serde_json::{Value, json};
 
-use super::Program;
-
-pub fn describe(old: &Program<'_>, new: &Program<'_>, difference: &Difference) -> Value {
+pub fn describe(old: &str, new: &str, difference: &Difference) -> Value {
     json!({
-        "old": old.name,
-        "new": new.name,
+        "old": old,
+        "new": new,
         "equal": difference.is_empty(),
         "logic": difference.logic.iter().map(logic).collect::<Value>(),
         "documentation": difference.documentation.iter().map(change).collect::<Value>(),

@@ -1,5 +1,6 @@
 //! `rungs diff`: what changed between two programs.
 
+mod do_more;
 mod folders;
 mod json;
 mod text;
@@ -11,6 +12,7 @@ use std::path::Path;
 
 use analysis::diff::{Difference, Side, compare};
 use convert::AnyProject;
+use convert::designer::Document;
 use ladder::{Documentation, Image, Project, Severity};
 
 use super::{MOST_BYTES, diagnostics_json, file_name, mode, read_file};
@@ -124,7 +126,14 @@ fn online(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
     if path.is_dir() {
         return Err(Error::Use("--online takes a file, not a folder".to_owned()));
     }
-    let Some((project, _)) = opened(path, strict, printer, out)? else { return Ok(Outcome::Unreadable) };
+    let project = match opened(path, strict, printer, out)? {
+        Some(Opened::Rslogix(project, _)) => project,
+        Some(Opened::Domore(_)) => {
+            let why = "a Do-more text holds no online image";
+            return Err(Error::Use(printable(&format!("{}: {why}", path.display()))));
+        }
+        None => return Ok(Outcome::Unreadable),
+    };
     let Some(image) = &project.online else {
         return Err(Error::Use(format!("{}: the project holds no online image", path.display())));
     };
@@ -134,7 +143,7 @@ fn online(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
     let new = Program { name: name.to_string(), image: &project.main, documentation };
     let difference =
         compare(Side { image, documentation: None }, Side { image: &project.main, documentation: Some(documentation) });
-    printer.print((&old, &new), None, difference, &[&project], out)
+    printer.print(&Both::rslogix(&old, &new, &[&project]), None, difference, out)
 }
 
 /// Two files; `how` they were found to belong together if their folders are compared.
@@ -146,32 +155,42 @@ fn pair(
     out: &mut dyn Write,
 ) -> Result<Outcome, Error> {
     let (a, b) = (opened(old, strict, printer, out)?, opened(new, strict, printer, out)?);
-    let (Some((a, a_is_text)), Some((b, b_is_text))) = (a, b) else { return Ok(Outcome::Unreadable) };
+    let ((a, a_is_text), (b, b_is_text)) = match (a, b) {
+        (Some(Opened::Rslogix(a, a_is_text)), Some(Opened::Rslogix(b, b_is_text))) => ((a, a_is_text), (b, b_is_text)),
+        (Some(Opened::Domore(a)), Some(Opened::Domore(b))) => {
+            return do_more::compare((old, &a), (new, &b), how, printer, out);
+        }
+        (Some(_), Some(_)) => return do_more::refuse(old, new, how, printer, out),
+        _ => return Ok(Outcome::Unreadable),
+    };
     let (x, y) = (Program::main(old, &a), Program::main(new, &b));
     let mut difference = compare(
         Side { image: x.image, documentation: Some(x.documentation) },
         Side { image: y.image, documentation: Some(y.documentation) },
     );
     text_side::leave_out(&mut difference, a_is_text, b_is_text);
-    let outcome = printer.print((&x, &y), how, difference, &[&a, &b], out);
+    let outcome = printer.print(&Both::rslogix(&x, &y, &[&a, &b]), how, difference, out);
     // Giving back two large models piece by piece would take longer than comparing them.
     std::mem::forget((a, b));
     outcome
 }
 
-/// A project and whether it is rung text, or `None` when it cannot be read, which is reported.
-fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Option<(Project, bool)>, Error> {
+/// A project of either dialect.
+enum Opened {
+    /// And whether it is rung text.
+    Rslogix(Box<Project>, bool),
+    Domore(Box<Document>),
+}
+
+/// A project, or `None` when it cannot be read, which is reported.
+fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> Result<Option<Opened>, Error> {
     let read = read_file(path, MOST_BYTES).and_then(|bytes| {
         let project = convert::open_any(&bytes, &file_name(path), mode(strict)).map_err(|error| error.to_string())?;
         Ok((project, text_side::is_text(&bytes)))
     });
     let why = match read {
-        Ok((AnyProject::Rslogix(project), is_text)) => return Ok(Some((*project, is_text))),
-        Ok((AnyProject::Domore(_), _)) => {
-            let why = "programs of Do-more are not compared by this command; their text form is made for any text \
-                       comparison";
-            return Err(Error::Use(printable(&format!("{}: {why}", path.display()))));
-        }
+        Ok((AnyProject::Rslogix(project), is_text)) => return Ok(Some(Opened::Rslogix(project, is_text))),
+        Ok((AnyProject::Domore(document), _)) => return Ok(Some(Opened::Domore(document))),
         Err(why) => why,
     };
     if printer.json {
@@ -181,24 +200,62 @@ fn opened(path: &Path, strict: bool, printer: &Printer, out: &mut dyn Write) -> 
     Ok(None)
 }
 
+/// Two programs as they are shown, whatever their dialect.
+struct Both<'p> {
+    names: (String, String),
+    sides: (report::diff::Side<'p>, report::diff::Side<'p>),
+    /// For rung text with its context.
+    rslogix: Option<(&'p Program<'p>, &'p Program<'p>)>,
+    files: Vec<Read>,
+}
+
+/// What reading a file found wrong.
+struct Read {
+    file: String,
+    diagnostics: serde_json::Value,
+    /// Parts that are missing.
+    errors: Vec<String>,
+}
+
+impl<'p> Both<'p> {
+    fn rslogix(old: &'p Program<'p>, new: &'p Program<'p>, projects: &[&Project]) -> Both<'p> {
+        let side = |program: &'p Program<'p>| report::diff::Side::rslogix(program.image, program.documentation);
+        let read = |project: &&Project| {
+            let errors = project.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+            Read {
+                file: project.source.file.clone(),
+                diagnostics: diagnostics_json(project),
+                errors: errors.map(|found| format!("{}: {}", found.place, found.message)).collect(),
+            }
+        };
+        Both {
+            names: (old.name.clone(), new.name.clone()),
+            sides: (side(old), side(new)),
+            rslogix: Some((old, new)),
+            files: projects.iter().map(read).collect(),
+        }
+    }
+}
+
 impl Printer {
     fn print(
         &self,
-        (old, new): (&Program<'_>, &Program<'_>),
+        both: &Both<'_>,
         how: Option<Paired>,
         mut difference: Difference,
-        projects: &[&Project],
         out: &mut dyn Write,
     ) -> Result<Outcome, Error> {
         self.sections.apply(&mut difference);
-        let broken = |project: &&&Project| project.diagnostics.iter().any(|d| d.severity == Severity::Error);
-        let broken: Vec<&&Project> = projects.iter().filter(broken).collect();
+        let (old, new) = (both.names.0.as_str(), both.names.1.as_str());
         if self.json {
             let mut document = json::describe(old, new, &difference);
+            if both.rslogix.is_none() {
+                do_more::name_places(&mut document, &difference, &both.sides);
+            }
             if let Some(how) = how {
                 document["paired_by"] = how.as_str().into();
             }
-            document["diagnostics"] = projects.iter().map(|project| diagnostics_json(project)).collect();
+            document["diagnostics"] = both.files.iter().map(|read| read.diagnostics.clone()).collect();
             writeln!(out, "{document}")?;
         } else {
             let renamed = match how {
@@ -207,30 +264,32 @@ impl Printer {
                 _ => "",
             };
             if !renamed.is_empty() {
-                writeln!(Printable(&mut *out), "# {} is now {}: {renamed}", old.name, new.name)?;
+                writeln!(Printable(&mut *out), "# {old} is now {new}: {renamed}")?;
             }
-            if self.unified {
-                unified::write(self.sections, (old, new), &difference, out)?;
-            } else if how.is_some() && difference.is_empty() {
-                writeln!(Printable(&mut *out), "{}: equal\n", new.name)?;
-            } else {
-                text::write(&self.look, self.sections, (old, new), &difference, out)?;
+            match both.rslogix {
+                Some(programs) if self.unified => unified::write(self.sections, programs, &difference, out)?,
+                _ if how.is_some() && difference.is_empty() => writeln!(Printable(&mut *out), "{new}: equal\n")?,
+                _ => {
+                    let look = text::Look { two_sided: self.look.two_sided && !self.unified, ..self.look };
+                    let sides = ((old, &both.sides.0), (new, &both.sides.1));
+                    text::write(&look, self.sections, sides, &difference, out)?;
+                }
             }
         }
         out.flush()?;
-        for project in &broken {
-            let errors = || project.diagnostics.iter().filter(|d| d.severity == Severity::Error);
-            for found in errors().take(5) {
-                let line = format!("{}: {}: {}", project.source.file, found.place, found.message);
-                eprintln!("{}", printable(&line));
+        let mut whole = true;
+        for Read { file, errors, .. } in both.files.iter().filter(|read| !read.errors.is_empty()) {
+            whole = false;
+            for found in errors.iter().take(5) {
+                eprintln!("{}", printable(&format!("{file}: {found}")));
             }
-            let count = errors().count();
+            let count = errors.len();
             eprintln!(
                 "{}: not all of it could be read ({count} errors): what is equal above may differ there",
-                printable(&project.source.file)
+                printable(file)
             );
         }
-        Ok(match (broken.is_empty(), difference.is_empty()) {
+        Ok(match (whole, difference.is_empty()) {
             (false, _) => Outcome::Unreadable,
             (true, true) => Outcome::Done,
             (true, false) => Outcome::Finding,

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use analysis::diff::{
     Change, ChangeKind, Difference, Edit, EditKind, FileChange, LogicChange, Place, RungChange, ValueChange, Word,
 };
-use ladder::ProgramFile;
+use report::diff::Side;
 
-use super::{Program, Sections};
+use super::Sections;
 
 /// How it is written.
 pub struct Look {
@@ -38,16 +38,20 @@ struct Writer<'w> {
     out: &'w mut dyn Write,
 }
 
+/// A program with its name on the command line.
+pub type Named<'n> = (&'n str, &'n Side<'n>);
+
 pub fn write(
     look: &Look,
     sections: Sections,
-    programs: (&Program<'_>, &Program<'_>),
+    programs: (Named<'_>, Named<'_>),
     difference: &Difference,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut writer = Writer { look, out };
-    writer.line(OLD, &format!("--- {}", programs.0.name))?;
-    writer.line(NEW, &format!("+++ {}", programs.1.name))?;
+    writer.line(OLD, &format!("--- {}", programs.0.0))?;
+    writer.line(NEW, &format!("+++ {}", programs.1.0))?;
+    let programs = (programs.0.1, programs.1.1);
     writer.plain("")?;
     if sections.logic {
         writer.logic(programs, difference)?;
@@ -59,7 +63,10 @@ pub fn write(
         writer.section("Documentation", difference.documentation.len())?;
         writer.changes(&difference.documentation)?;
     }
-    if sections.values {
+    if sections.values && difference.values_left_out {
+        writer.line(HEAD, "Values: not compared, the files hold none")?;
+        writer.plain("")?;
+    } else if sections.values {
         writer.section("Values", difference.values.len())?;
         writer.values(&difference.values)?;
     }
@@ -96,7 +103,7 @@ impl Writer<'_> {
         if count == 0 { self.plain("") } else { Ok(()) }
     }
 
-    fn logic(&mut self, programs: (&Program<'_>, &Program<'_>), difference: &Difference) -> io::Result<()> {
+    fn logic(&mut self, programs: (&Side<'_>, &Side<'_>), difference: &Difference) -> io::Result<()> {
         self.section("Logic", difference.logic.len())?;
         for found in &difference.renames {
             self.plain(&format!(
@@ -108,7 +115,7 @@ impl Writer<'_> {
             .logic
             .iter()
             .filter_map(|change| match change {
-                LogicChange::Rung(rung) if rung.only_rename => rung.new.map(place),
+                LogicChange::Rung(rung) if rung.only_rename => rung.new.map(|at| programs.1.place(at)),
                 _ => None,
             })
             .collect();
@@ -119,7 +126,7 @@ impl Writer<'_> {
         }
         for change in &difference.logic {
             match change {
-                LogicChange::File(file) => self.file(file)?,
+                LogicChange::File(file) => self.file(programs, file)?,
                 LogicChange::Rung(rung) if rung.only_rename => {}
                 LogicChange::Rung(rung) => self.rung(programs, rung)?,
             }
@@ -127,24 +134,25 @@ impl Writer<'_> {
         if difference.logic.is_empty() { Ok(()) } else { self.plain("") }
     }
 
-    fn file(&mut self, file: &FileChange) -> io::Result<()> {
-        let number = |number: Option<u16>| number.map_or_else(String::new, |number| number.to_string());
+    fn file(&mut self, programs: (&Side<'_>, &Side<'_>), file: &FileChange) -> io::Result<()> {
+        let name = |side: &Side<'_>, number: Option<u16>| match number {
+            Some(number) if side.block_name(number).is_some() => side.part_name(number),
+            Some(number) => format!("program {}", side.part_name(number)),
+            None => String::new(),
+        };
+        let (old, new) = (name(programs.0, file.old), name(programs.1, file.new));
         let rungs = file.rungs;
         self.plain("")?;
         match file.kind {
-            ChangeKind::Inserted => {
-                self.line(NEW, &format!("  + program file {} ({rungs} rungs) is new", number(file.new)))
-            }
-            ChangeKind::Deleted => {
-                self.line(OLD, &format!("  - program file {} ({rungs} rungs) is gone", number(file.old)))
-            }
-            _ => self.plain(&format!("  program file {} is now program file {}", number(file.old), number(file.new))),
+            ChangeKind::Inserted => self.line(NEW, &format!("  + {new} ({rungs} rungs) is new")),
+            ChangeKind::Deleted => self.line(OLD, &format!("  - {old} ({rungs} rungs) is gone")),
+            _ => self.plain(&format!("  {old} is now {new}")),
         }
     }
 
-    fn rung(&mut self, programs: (&Program<'_>, &Program<'_>), found: &RungChange) -> io::Result<()> {
+    fn rung(&mut self, programs: (&Side<'_>, &Side<'_>), found: &RungChange) -> io::Result<()> {
         self.plain("")?;
-        self.line(HEAD, &format!("  {}", headline(found)))?;
+        self.line(HEAD, &format!("  {}", headline_of(found, programs)))?;
         for edit in &found.edits {
             self.plain(&format!("      {}", sentence(edit)))?;
         }
@@ -159,11 +167,8 @@ impl Writer<'_> {
     }
 
     /// The comment that comes or goes with a rung.
-    fn comment(&mut self, sign: char, color: &str, at: Option<Place>, program: &Program<'_>) -> io::Result<()> {
-        let rung = at.and_then(|at| program.image.program_file(at.file)?.rungs.get(at.rung));
-        let Some(comment) = rung.and_then(|rung| rung.comment.as_ref()) else { return Ok(()) };
-        let title = Some(comment.title.as_str()).filter(|title| !title.is_empty());
-        for line in title.into_iter().chain(comment.lines()).take(MOST_LINES) {
+    fn comment(&mut self, sign: char, color: &str, at: Option<Place>, program: &Side<'_>) -> io::Result<()> {
+        for line in at.map(|at| program.comment(at)).unwrap_or_default().iter().take(MOST_LINES) {
             self.line(color, &format!("  {sign}   (* {line} *)"))?;
         }
         Ok(())
@@ -200,14 +205,11 @@ impl Writer<'_> {
     }
 
     /// Both rungs drawn beside each other; `false` if there is nothing to draw.
-    fn drawn(&mut self, programs: (&Program<'_>, &Program<'_>), found: &RungChange) -> io::Result<bool> {
+    fn drawn(&mut self, programs: (&Side<'_>, &Side<'_>), found: &RungChange) -> io::Result<bool> {
         let half = (self.look.width - 3) / 2;
         let style = render::Style { width: half, color: false, values: false, ..render::Style::default() };
-        let draw = |program: &Program<'_>, at: Option<Place>| -> Vec<String> {
-            let file: Option<(&ProgramFile, usize)> =
-                at.and_then(|at| Some((program.image.program_file(at.file)?, at.rung)));
-            let Some((file, rung)) = file else { return Vec::new() };
-            let text = render::rung(program.image, file, rung, program.documentation, &style);
+        let draw = |program: &Side<'_>, at: Option<Place>| -> Vec<String> {
+            let text = at.and_then(|at| program.rung(at)).map(|rung| rung.drawn(&style)).unwrap_or_default();
             text.lines().map(str::to_owned).collect()
         };
         let (left, right) = (draw(programs.0, found.old), draw(programs.1, found.new));
@@ -266,30 +268,41 @@ impl Writer<'_> {
     }
 }
 
-/// `2:4`, file and rung.
-fn place(at: Place) -> String {
-    format!("{}:{}", at.file, at.rung)
+/// `File 2 rung 4 changed (was rung 3)`.
+fn headline_of(found: &RungChange, programs: (&Side<'_>, &Side<'_>)) -> String {
+    headline_with(found, &|is_new, at| {
+        let side = if is_new { programs.1 } else { programs.0 };
+        (side.part_name(at.file), side.rung_name(at))
+    })
 }
 
-/// `File 2 rung 4 changed (was rung 3)`.
-fn headline(found: &RungChange) -> String {
-    let name = |at: Place| format!("File {} rung {}", at.file, at.rung);
-    let from = |old: Place, new: Place| match (old.file == new.file, old.rung == new.rung) {
-        (true, true) => String::new(),
-        (true, false) => format!("rung {}", old.rung),
-        (false, _) => format!("file {} rung {}", old.file, old.rung),
+/// As `words` calls a place of the old or of the new program: its file and its rung.
+fn headline_with(found: &RungChange, words: &dyn Fn(bool, Place) -> (String, String)) -> String {
+    let name = |is_new: bool, at: Place| {
+        let (part, rung) = words(is_new, at);
+        let mut characters = part.chars();
+        let first = characters.next().map(|first| first.to_uppercase().chain(characters).collect::<String>());
+        format!("{} {rung}", first.unwrap_or_default())
+    };
+    let from = |old: Place, new: Place| {
+        let (was, is) = (words(false, old), words(true, new));
+        match (was.0 == is.0, old.rung == new.rung) {
+            (true, true) => String::new(),
+            (true, false) => was.1,
+            (false, _) => format!("{} {}", was.0, was.1),
+        }
     };
     match (found.old, found.new) {
         (Some(old), Some(new)) if found.kind == ChangeKind::Moved => {
             let too = if found.edits.is_empty() { "" } else { ", and changed" };
-            format!("{} moved here from {}{too}", name(new), from(old, new))
+            format!("{} moved here from {}{too}", name(true, new), from(old, new))
         }
         (Some(old), Some(new)) => match from(old, new) {
-            was if was.is_empty() => format!("{} changed", name(new)),
-            was => format!("{} changed (was {was})", name(new)),
+            was if was.is_empty() => format!("{} changed", name(true, new)),
+            was => format!("{} changed (was {was})", name(true, new)),
         },
-        (Some(old), None) => format!("{} deleted", name(old)),
-        (None, Some(new)) => format!("{} inserted", name(new)),
+        (Some(old), None) => format!("{} deleted", name(false, old)),
+        (None, Some(new)) => format!("{} inserted", name(true, new)),
         (None, None) => String::new(),
     }
 }

@@ -1,14 +1,18 @@
 //! Commands on Do-more projects: the same questions, asked of the other dialect.
 
+mod data;
 mod export;
 mod info;
 mod show;
+mod timers;
 mod verify;
 mod xref;
 
+pub use data::data;
 pub use export::{ending, exported};
 pub use info::info;
 pub use show::show;
+pub use timers::timers;
 pub use verify::verify;
 pub use xref::xref;
 
