@@ -55,7 +55,7 @@ fn hundred_rungs() -> Image {
 fn main() {
     let image = hundred_rungs();
     let migration = convert::migrate::migrate(&image, &[], &Default::default()).expect("no map to be wrong");
-    let rows = migration.map.iter().filter(|row| !row.slc.starts_with("helper"));
+    let rows = migration.map.iter().filter(|row| row.places_data());
     let map: Vec<Mapping> =
         rows.map(|row| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() }).collect();
 

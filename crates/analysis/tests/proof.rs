@@ -26,7 +26,7 @@ fn options(scans: u64) -> Options {
 
 fn migrated(image: &Image) -> (domore::Project, Vec<Mapping>) {
     let migration = convert::migrate::migrate(image, &[], &Default::default()).expect("no map to be wrong");
-    let rows = migration.map.iter().filter(|row| !row.slc.starts_with("helper"));
+    let rows = migration.map.iter().filter(|row| row.places_data());
     let map = rows.map(|row| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() });
     (migration.project, map.collect())
 }

@@ -150,6 +150,26 @@ fn programs_stay_equal() {
     assert!(differ.is_empty(), "{} programs differ", differ.len());
 }
 
+#[test]
+fn a_map_that_is_passed_back_changes_nothing() {
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder, ".rss").expect("the corpus can be listed");
+    let mut rows = 0;
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let name = path.display();
+        let first = migrate::migrate(&project.main, &[], &Options::default()).expect("it migrates");
+        let text = migrate::map_file::write(&first.map);
+        let map = migrate::map_file::read(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        rows += map.len();
+        let second = migrate::migrate(&project.main, &map, &Options::default());
+        let second = second.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(second.map, first.map, "{name}");
+        assert!(domore::text::write(&second.project) == domore::text::write(&first.project), "{name}");
+    }
+    println!("{rows} rows");
+}
+
 /// Every word Designer's exports or an import on hardware show: instructions that are no contacts.
 const SHOWN: &str = "NOT ANDSTR ORSTR DUPBOOL POPBOOL OUT SET RST RSTR PD ND TMR TMRDOWN ONDTMR OFFDTMR CNT CNTDN UDC MOVE MATH COPY \
     INIT MEMCOPY STRCLEAR SCALE CLAMP FILTER FLASHER DEBOUNCE TIMEDOUT INC CALL RET RUN SUSPEND JMP SG FOR NEXT REPEAT UNTIL NOP";

@@ -28,7 +28,7 @@ impl Migrated {
 }
 
 fn mappings(migration: &Migration) -> Vec<Mapping> {
-    let rows = migration.map.iter().filter(|row| !row.slc.starts_with("helper"));
+    let rows = migration.map.iter().filter(|row| row.places_data());
     rows.map(|row| Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() }).collect()
 }
 

@@ -153,13 +153,13 @@ fn mappings(path: &Path) -> Result<Vec<(usize, Mapping)>, String> {
     Ok(numbered(&rows).collect())
 }
 
-/// The rows that place data; helpers have no counterpart in the original.
+/// The rows that place data.
 pub fn of_rows(rows: &[MapRow]) -> Vec<Mapping> {
     numbered(rows).map(|(_, mapping)| mapping).collect()
 }
 
 fn numbered(rows: &[MapRow]) -> impl Iterator<Item = (usize, Mapping)> {
-    let placed = (1..).zip(rows).filter(|(_, row)| !row.slc.is_empty() && !row.slc.starts_with("helper"));
+    let placed = (1..).zip(rows).filter(|(_, row)| row.places_data());
     placed.map(|(number, row)| {
         (number, Mapping { original: row.slc.clone(), words: row.words, other: row.domore.clone() })
     })

@@ -1,12 +1,14 @@
 //! Documentation of the result: nicknames, descriptions, rung comments.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use domore::program::ElementDoc;
 use ladder::{Address, Image, Rung, Target};
 
+use super::allocate::Places;
 use super::context::Context;
 use super::facts::addresses;
+use super::map_file::{MapError, NOTHING, Wish};
 
 /// A nickname has at most this many characters.
 pub const LONGEST_NICKNAME: usize = 16;
@@ -17,7 +19,15 @@ const LINE: usize = 100;
 /// Makes names unique and short.
 #[derive(Clone, Debug, Default)]
 struct Names {
-    taken: BTreeSet<String>,
+    /// In lower case, with what has them.
+    taken: BTreeMap<String, String>,
+}
+
+/// `N7`, `X0`, `ST1`: what reads as an element is no name.
+fn reads_as_element(name: &str) -> bool {
+    let numbered =
+        |address: domore::address::Address| matches!(address.element, domore::address::Element::Numbered { .. });
+    domore::address::Address::parse(name).is_ok_and(numbered) && name.len() <= 6
 }
 
 impl Names {
@@ -33,11 +43,7 @@ impl Names {
         if name.starts_with(|c: char| c.is_ascii_digit()) {
             name.insert(0, '_');
         }
-        // `N7`, `X0`, `ST1`: what reads as an element is none.
-        if domore::address::Address::parse(&name)
-            .is_ok_and(|address| matches!(address.element, domore::address::Element::Numbered { .. }))
-            && name.len() <= 6
-        {
+        if reads_as_element(&name) {
             name.push('_');
         }
         name.truncate(LONGEST_NICKNAME);
@@ -46,45 +52,161 @@ impl Names {
         }
         let mut unique = name.clone();
         let mut number = 2;
-        while !self.taken.insert(unique.to_ascii_lowercase()) {
+        while self.taken.contains_key(&unique.to_ascii_lowercase()) {
             let suffix = format!("_{number}");
             unique = name.chars().take(LONGEST_NICKNAME - suffix.len()).collect::<String>() + &suffix;
             number += 1;
         }
+        self.taken.insert(unique.to_ascii_lowercase(), symbol.to_owned());
         unique
+    }
+
+    /// A nickname a person chose, as it is.
+    ///
+    /// # Errors
+    /// Why it is none.
+    fn take(&mut self, name: &str, element: &str) -> Result<(), String> {
+        let sign = name.chars().find(|c| !c.is_ascii_alphanumeric() && *c != '_');
+        if let Some(sign) = sign {
+            return Err(format!("nickname `{name}`: expected letters, digits and _, found `{sign}`"));
+        }
+        if name.len() > LONGEST_NICKNAME {
+            return Err(format!("nickname `{name}` has {} characters, Designer takes {LONGEST_NICKNAME}", name.len()));
+        }
+        if name.starts_with(|c: char| c.is_ascii_digit()) || reads_as_element(name) {
+            return Err(format!("nickname `{name}` reads as a number or as an element"));
+        }
+        match self.taken.insert(name.to_ascii_lowercase(), element.to_owned()) {
+            Some(other) => Err(format!("nickname `{name}` is taken by {other}")),
+            None => Ok(()),
+        }
     }
 }
 
-/// Documentation of all elements: of addresses that have a symbol or a description, of parts of
-/// structures the program names, of helpers.
-pub(super) fn elements(context: &Context<'_>) -> Vec<ElementDoc> {
+/// An element with its documentation.
+#[derive(Clone, Debug)]
+pub(super) struct Documented {
+    /// The address of the original; a helper has none.
+    pub(super) address: Option<Address>,
+    /// What it is in the result.
+    pub(super) element: String,
+    /// The nickname; empty for none.
+    nickname: String,
+    /// The symbol of the original.
+    symbol: String,
+    description: Vec<String>,
+    /// A person took nickname or description away: the map has to say so again.
+    taken: [bool; 2],
+}
+
+impl Documented {
+    fn line(&self) -> ElementDoc {
+        let mut description: Vec<String> = self.address.iter().map(Address::to_string).collect();
+        if !self.symbol.is_empty() && self.symbol != self.nickname {
+            description.push(format!("symbol {}", self.symbol));
+        }
+        description.extend(self.description.iter().cloned());
+        let (element, nickname) = (self.element.clone(), self.nickname.clone());
+        ElementDoc { element, flags: Some(String::new()), nickname, description, ..ElementDoc::default() }
+    }
+
+    /// The nickname as the map has it.
+    pub(super) fn nickname_in_map(&self) -> String {
+        if self.taken[0] { NOTHING.to_owned() } else { self.nickname.clone() }
+    }
+
+    /// The description as the map has it.
+    pub(super) fn description_in_map(&self) -> String {
+        if self.taken[1] { NOTHING.to_owned() } else { self.description.join(" ") }
+    }
+}
+
+/// The lines of the result.
+pub(super) fn elements(documented: &[Documented]) -> Vec<ElementDoc> {
+    documented.iter().map(Documented::line).collect()
+}
+
+/// Documentation of all elements: of helpers, of addresses that have a symbol or a description, of parts of
+/// structures the program names, and what a person wants them to be called. `blocks` are names of code blocks.
+///
+/// # Errors
+/// A nickname that is none, or that two elements are to have.
+pub(super) fn documented<'b>(
+    context: &Context<'_>,
+    wishes: &[Wish],
+    blocks: impl IntoIterator<Item = &'b str>,
+) -> Result<Vec<Documented>, MapError> {
     let mut names = Names::default();
-    let mut documented = BTreeSet::new();
+    names.taken.extend(blocks.into_iter().map(|name| (name.to_ascii_lowercase(), "a code block".to_owned())));
     let mut found = Vec::new();
-    let flags = || Some(String::new());
     // Helpers first: rungs are read with their names.
     for (element, helper) in &context.helpers {
-        let nickname = names.make(&helper.nickname);
-        let element = element.to_string();
-        documented.insert(element.clone());
-        let description = vec![helper.text.clone()];
-        found.push(ElementDoc { element, flags: flags(), nickname, description, ..ElementDoc::default() });
+        found.push(Documented {
+            address: None,
+            element: element.to_string(),
+            nickname: names.make(&helper.nickname),
+            symbol: String::new(),
+            description: vec![helper.text.clone()],
+            taken: [false; 2],
+        });
     }
-    for (address, symbol, description) in entries(context.image) {
-        let Some(element) = element_of(context, &address) else { continue };
+    let mut documented: BTreeSet<String> = found.iter().map(|row| row.element.clone()).collect();
+    let mut wanted: BTreeMap<String, &Wish> = BTreeMap::new();
+    let mut entries = entries(context.image);
+    for wish in wishes {
+        let wrong = |what: String| MapError { row: wish.row, what };
+        let Some(wished) = &wish.address else {
+            let helper = found.iter().find(|row| row.element == wish.domore && row.nickname != wish.name);
+            let known = wish.name.is_empty() || found.iter().any(|row| row.nickname == wish.name);
+            match helper.filter(|_| !known) {
+                Some(helper) => {
+                    let (found, kept) = (&wish.name, &helper.nickname);
+                    return Err(wrong(format!(
+                        "expected the helper {kept}, found `{found}`: helpers keep their names"
+                    )));
+                }
+                None => continue,
+            }
+        };
+        if wish.name.is_empty() && wish.description.is_empty() {
+            continue;
+        }
+        let element = operand(&context.places, wished);
+        let element = element.filter(|element| !documented.contains(element));
+        let element = element.ok_or_else(|| wrong(format!("{wished} has no element that could have a nickname")))?;
+        let shown = context.image.documentation.shown(&Target::Address(wished.clone()), "");
+        let symbol = shown.symbol.unwrap_or_default();
+        // Maps can have the symbol where the nickname made of it stands now.
+        if !wish.name.is_empty() && wish.name != NOTHING && wish.name != symbol.trim() {
+            names.take(&wish.name, &element).map_err(wrong)?;
+        }
+        if let Some(other) = wanted.insert(element.clone(), wish) {
+            return Err(wrong(format!("{element} has its nickname and description in row {} already", other.row)));
+        }
+        entries.push((wished.clone(), symbol, shown.description));
+    }
+    for (address, symbol, mut description) in entries {
+        let Some(element) = operand(&context.places, &address) else { continue };
         if !documented.insert(element.clone()) {
             continue;
         }
-        let wanted = if symbol.is_empty() { structure_name(&address) } else { symbol.clone() };
-        let nickname = names.make(&wanted);
-        let mut lines = vec![address.to_string()];
-        if !symbol.is_empty() && symbol != nickname {
-            lines.push(format!("symbol {symbol}"));
+        let wish = wanted.get(&element);
+        let (name, text) = wish.map_or(("", ""), |wish| (wish.name.as_str(), wish.description.as_str()));
+        let nickname = match name {
+            NOTHING => String::new(),
+            own if !own.is_empty() && own != symbol.trim() => own.to_owned(),
+            _ if symbol.is_empty() => names.make(&structure_name(&address)),
+            _ => names.make(&symbol),
+        };
+        if text == NOTHING {
+            description.clear();
+        } else if !text.is_empty() && text.trim() != description.join(" ").trim() {
+            description = text.lines().map(str::to_owned).collect();
         }
-        lines.extend(description);
-        found.push(ElementDoc { element, flags: flags(), nickname, description: lines, ..ElementDoc::default() });
+        let taken = [name == NOTHING, text == NOTHING];
+        found.push(Documented { address: Some(address), element, nickname, symbol, description, taken });
     }
-    found
+    Ok(found)
 }
 
 /// Addresses with documentation, then parts of structures and bits the rungs name, each with symbol and
@@ -121,14 +243,14 @@ fn structure_name(address: &Address) -> String {
 }
 
 /// The operand of the result that stands for an address, without effect on the migration.
-fn element_of(context: &Context<'_>, address: &Address) -> Option<String> {
-    let (file_type, file, word) = context.places.word_of(address)?;
+pub(super) fn operand(places: &Places, address: &Address) -> Option<String> {
+    let (file_type, file, word) = places.word_of(address)?;
     match &address.bit {
-        Some(bit) => context.places.bit(file_type, file, word, bit.number()? % 16),
-        None => match context.places.element(file_type, file, word) {
+        Some(bit) => places.bit(file_type, file, word, bit.number()? % 16),
+        None => match places.element(file_type, file, word) {
             Some(element) => Some(element.to_string()),
             None if address.word.is_none() && address.file_type.is_structure() => None,
-            None => context.places.word(file_type, file, word),
+            None => places.word(file_type, file, word),
         },
     }
 }

@@ -5,18 +5,21 @@
 //! I:1.0,I:1.0,1,X0,,
 //! I:1.0/3,,,X40,START,panel A
 //! N7:0,N7:99,100,N0,,
+//! N7:5,,,N5,SPEED,set by the panel
 //! ```
 //!
-//! A row tells where the word of the first column lies (`domore`), and how many words follow it there.
-//! To move data, change `domore`. A row for a single point of I or O moves that point. Rows whose `slc`
-//! begins with `helper` only inform.
+//! A row with `words` tells where the word of the first column lies (`domore`), and how many words follow it there.
+//! To move data, change `domore`. A row without gives an address its nickname and description, and moves a
+//! single point of I or O: [`Wish`]. Rows whose `slc` begins with `helper` only inform.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-use ladder::{Address, Image, Target};
+use ladder::{Address, Image};
 
 use super::allocate::{Block, Element, Places, Span};
 use super::context::Context;
+use super::docs::Documented;
 
 /// A row of the map.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -33,6 +36,15 @@ pub struct MapRow {
     pub name: String,
     /// Description, for reading.
     pub description: String,
+}
+
+impl MapRow {
+    /// Whether it says where data of the original lies. Helpers have no counterpart there, and rows of single
+    /// addresses only tell nicknames, but for points of I and O and for bits that another SLC program has elsewhere.
+    pub fn places_data(&self) -> bool {
+        let point = self.slc.contains('/') && (self.slc.starts_with(['I', 'O']) || self.domore.contains('/'));
+        !self.slc.starts_with("helper") && !self.slc.is_empty() && (self.words > 0 || point)
+    }
 }
 
 /// Why a map does not fit.
@@ -114,26 +126,99 @@ pub fn write(rows: &[MapRow]) -> String {
     writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
 
-/// Moves spans and points to where a person put them.
+/// The nickname and description a person wants for an address.
+#[derive(Clone, Debug)]
+pub(super) struct Wish {
+    /// Row of the map, from 1.
+    pub(super) row: usize,
+    /// `None` for a row of a helper.
+    pub(super) address: Option<Address>,
+    /// The element of the row.
+    pub(super) domore: String,
+    /// The nickname; blank for the one made from the symbol, `-` for none.
+    pub(super) name: String,
+    /// The description; blank for the original's, `-` for none.
+    pub(super) description: String,
+}
+
+/// What stands for nothing where a blank stands for what the original has.
+pub(super) const NOTHING: &str = "-";
+
+/// Moves spans and points to where a person put them; what they are to be called.
 ///
 /// # Errors
 /// A row that names nothing of the program, a block that cannot hold it, or places that overlap.
-pub(super) fn apply(places: &mut Places, rows: &[MapRow]) -> Result<(), MapError> {
+pub(super) fn apply(image: &Image, places: &mut Places, rows: &[MapRow]) -> Result<Vec<Wish>, MapError> {
     if rows.is_empty() {
-        return Ok(());
+        return Ok(Vec::new());
     }
+    let before = places.clone();
+    let beginning = |address: &Address| {
+        let key = before.word_of(address).filter(|_| address.bit.is_none())?;
+        before.spans().iter().position(|span| (span.file_type, span.file, span.first_word) == key)
+    };
+    let runs = rows.iter().filter(|row| row.words > 0).filter_map(|row| Address::parse(&row.slc).ok());
+    let told: BTreeSet<usize> = runs.filter_map(|address| beginning(&address)).collect();
     let mut pinned = vec![false; places.spans().len()];
-    let mut moved: Vec<(usize, Element)> = Vec::new();
+    let (mut named, mut wishes) = (Vec::new(), Vec::new());
     for (index, row) in rows.iter().enumerate() {
         let wrong = |what: String| MapError { row: index + 1, what };
-        if row.slc.is_empty() || row.slc.starts_with("helper") {
+        if row.slc.is_empty() {
+            continue;
+        }
+        if row.slc.starts_with("helper") {
+            let (domore, name) = (row.domore.clone(), row.name.clone());
+            wishes.push(Wish { row: index + 1, address: None, domore, name, description: String::new() });
             continue;
         }
         let address = Address::parse(&row.slc).map_err(|error| wrong(format!("`{}` is {error}", row.slc)))?;
-        let element = element(&row.domore)
-            .ok_or_else(|| wrong(format!("expected an element such as X0, C16 or N100, found `{}`", row.domore)))?;
         let key = places.word_of(&address).ok_or_else(|| wrong(format!("{} is not in the program", row.slc)))?;
-        if let Some(bit) = address.bit.as_ref().and_then(ladder::Place::number) {
+        // A row of one address tells where its words are only if no other row does, and if it moves them.
+        let unmoved = || super::docs::operand(&before, &address).is_some_and(|known| known == row.domore);
+        let span = beginning(&address).filter(|span| row.words > 0 || !told.contains(span) && !unmoved());
+        let Some(span) = span else {
+            if row.words > 0 {
+                return Err(wrong(format!("{} does not begin a run of words of the program", row.slc)));
+            }
+            named.push((index + 1, address, key));
+            continue;
+        };
+        let at = parsed(row).map_err(wrong)?;
+        let found = places.spans_mut().get_mut(span).filter(|found| fits(found, at.block));
+        let found = found.ok_or_else(|| wrong(format!("{} cannot lie in {}", row.slc, row.domore)))?;
+        if at.block.is_bits() && at.number % 16 != 0 {
+            return Err(wrong(format!("{}: words of bits begin at a multiple of 16", row.domore)));
+        }
+        if pinned.get(span) == Some(&true) {
+            return Err(wrong(format!("{} is placed by another row before", row.slc)));
+        }
+        found.at = at;
+        if let Some(pinned) = pinned.get_mut(span) {
+            *pinned = true;
+        }
+        let (name, description) = of_file(image, key.0, key.1);
+        let edited = |text: &str, own: &str| !text.is_empty() && text != own.trim();
+        if row.words > 0 && (edited(&row.name, &name) || edited(&row.description, &description)) {
+            let first = row.slc.as_str();
+            return Err(wrong(format!(
+                "{first}: name and description of a run of words are those of its data file, `{name}`, for reading; \
+                 a nickname goes into a row of its address alone, `{first},,,{},NICKNAME,`",
+                row.domore
+            )));
+        }
+        if row.words == 0 {
+            named.push((index + 1, address, key));
+        }
+    }
+    for (row_number, address, key) in named {
+        let Some(row) = rows.get(row_number - 1) else { continue };
+        let wrong = |what: String| MapError { row: row_number, what };
+        let bit = address.bit.as_ref().and_then(ladder::Place::number);
+        // Where its word goes it goes, unless its own row says otherwise.
+        let known = [&before, &*places].map(|places| super::docs::operand(places, &address));
+        let stays = row.domore.is_empty() || known.iter().flatten().any(|known| *known == row.domore);
+        if let (false, Some(bit)) = (stays, bit) {
+            let element = parsed(row).map_err(wrong)?;
             let bits = if address.file_type == ladder::FileType::I { Block::X } else { Block::Y };
             if !address.file_type.has_slots() {
                 return Err(wrong(format!("{}: single bits can be moved in I and O only", row.slc)));
@@ -144,39 +229,30 @@ pub(super) fn apply(places: &mut Places, rows: &[MapRow]) -> Result<(), MapError
             if places.span(key.0, key.1, key.2).is_none() {
                 return Err(wrong(format!("{} is not in the program", row.slc)));
             }
-            // A point where its word has it anyway is none of its own.
-            let usual = places.bit(key.0, key.1, key.2, bit % 16);
-            if usual.as_deref() != Some(row.domore.as_str()) {
-                places.set_point((key.0, key.1, key.2, bit % 16), element);
-            }
-            continue;
-        }
-        let span = places
-            .spans()
-            .iter()
-            .position(|span| (span.file_type, span.file, span.first_word) == (key.0, key.1, key.2));
-        let Some(span) = span else {
+            places.set_point((key.0, key.1, key.2, bit % 16), element);
+        } else if !stays {
             return Err(wrong(format!("{} does not begin a run of words of the program", row.slc)));
-        };
-        if let Some(found) = places.spans().get(span)
-            && !fits(found, element.block)
-        {
-            return Err(wrong(format!("{} cannot lie in {}", row.slc, row.domore)));
         }
-        if element.block.is_bits() && element.number % 16 != 0 {
-            return Err(wrong(format!("{}: words of bits begin at a multiple of 16", row.domore)));
-        }
-        if let Some(pinned) = pinned.get_mut(span) {
-            *pinned = true;
-        }
-        moved.push((span, element));
+        let MapRow { domore, name, description, .. } = row.clone();
+        wishes.push(Wish { row: row_number, address: Some(address), domore, name, description });
     }
-    for (span, element) in moved {
-        if let Some(span) = places.spans_mut().get_mut(span) {
-            span.at = element;
-        }
+    settle(places, &pinned)?;
+    Ok(wishes)
+}
+
+/// The element a row gives.
+fn parsed(row: &MapRow) -> Result<Element, String> {
+    element(&row.domore).ok_or_else(|| format!("expected an element such as X0, C16 or N100, found `{}`", row.domore))
+}
+
+/// Name and description of a data file; I and O have none of their own.
+fn of_file(image: &Image, file_type: ladder::FileType, file: u16) -> (String, String) {
+    match file_type.has_slots() {
+        true => Default::default(),
+        false => image
+            .data_file(file_type, file)
+            .map_or_else(Default::default, |file| (file.name.clone(), file.description.clone())),
     }
-    settle(places, &pinned)
 }
 
 /// Words of this span can lie in that block.
@@ -190,7 +266,7 @@ fn fits(span: &Span, block: Block) -> bool {
 
 /// Puts what nobody placed behind everything else, and refuses overlaps.
 fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
-    let mut next: std::collections::BTreeMap<Block, u32> = std::collections::BTreeMap::new();
+    let mut next: BTreeMap<Block, u32> = BTreeMap::new();
     for (span, _) in places.spans().iter().zip(pinned).filter(|(_, pinned)| **pinned) {
         let end = next.entry(span.at.block).or_default();
         *end = (*end).max(span.at.number.saturating_add(span.elements()));
@@ -230,7 +306,7 @@ fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
             return Err(MapError { row: 0, what });
         }
     }
-    let mut taken: std::collections::BTreeMap<String, String> = std::collections::BTreeMap::new();
+    let mut taken: BTreeMap<String, String> = BTreeMap::new();
     let moved: Vec<Element> = places.points().map(|(_, element)| element).collect();
     if moved.is_empty() {
         return Ok(());
@@ -255,22 +331,26 @@ fn element(text: &str) -> Option<Element> {
     Some(Element { block: Block::by_name(block)?, number: number.parse().ok()? })
 }
 
-/// The rows of a migration.
-pub(super) fn rows(image: &Image, context: &Context<'_>) -> Vec<MapRow> {
+/// The rows of a migration: of each span, and behind it of what it documents.
+pub(super) fn rows(image: &Image, context: &Context<'_>, documented: &[Documented]) -> Vec<MapRow> {
     let mut rows = Vec::new();
-    let documentation = |address: &Address| {
-        let shown = image.documentation.shown(&Target::Address(address.clone()), "");
-        (shown.symbol.unwrap_or_default(), shown.description.join(" "))
-    };
+    let mut within: BTreeMap<_, Vec<(u32, u16, &Documented)>> = BTreeMap::new();
+    for row in documented {
+        let key = row.address.as_ref().and_then(|address| context.places.word_of(address));
+        let span = key.and_then(|key| context.places.span(key.0, key.1, key.2));
+        if let (Some(address), Some(key), Some(span)) = (&row.address, key, span) {
+            // Bits behind their word.
+            let bit = address.bit.as_ref().and_then(ladder::Place::number).map_or(0, |bit| bit % 16 + 1);
+            let own = key.2.checked_sub(span.first_word).is_some_and(|offset| offset < span.own);
+            if own {
+                within.entry((span.file_type, span.file, span.first_word)).or_default().push((key.2, bit, row));
+            }
+        }
+    }
     for span in context.places.spans() {
         let Some(first) = span.address(0) else { continue };
         let last = span.address(span.words.saturating_sub(1)).unwrap_or_else(|| first.clone());
-        let (name, description) = match span.file_type.has_slots() {
-            true => (String::new(), String::new()),
-            false => image
-                .data_file(span.file_type, span.file)
-                .map_or_else(Default::default, |file| (file.name.clone(), file.description.clone())),
-        };
+        let (name, description) = of_file(image, span.file_type, span.file);
         rows.push(MapRow {
             slc: plain(&first, span.size),
             last: plain(&last, span.size),
@@ -279,32 +359,30 @@ pub(super) fn rows(image: &Image, context: &Context<'_>) -> Vec<MapRow> {
             name,
             description,
         });
-        if matches!(span.at.block, Block::X | Block::Y) {
-            for bit in 0..16 {
-                let address = first.clone().with_bit(bit);
-                let (name, description) = documentation(&address);
-                let place = context.places.bit(span.file_type, span.file, span.first_word, bit);
-                let own =
-                    context.places.points().any(|(key, _)| key == (span.file_type, span.file, span.first_word, bit));
-                if !own && name.is_empty() && description.is_empty() {
-                    continue;
-                }
-                rows.push(MapRow {
-                    slc: address.to_string(),
-                    domore: place.unwrap_or_default(),
-                    name,
-                    description,
-                    ..MapRow::default()
-                });
-            }
+        let mut found = within.remove(&(span.file_type, span.file, span.first_word)).unwrap_or_default();
+        found.sort_by_key(|(word, bit, _)| (*word, *bit));
+        let apart = context.places.points().filter(|(key, _)| {
+            let known = |row: &(u32, u16, &Documented)| (row.0, row.1) == (key.2, key.3 + 1);
+            (key.0, key.1, key.2) == (span.file_type, span.file, span.first_word) && !found.iter().any(known)
+        });
+        for (key, element) in apart {
+            let address = first.clone().with_bit(key.3);
+            rows.push(MapRow { slc: address.to_string(), domore: element.to_string(), ..MapRow::default() });
         }
+        rows.extend(found.into_iter().map(|(_, _, row)| MapRow {
+            slc: row.address.as_ref().map_or_else(String::new, Address::to_string),
+            domore: row.element.clone(),
+            name: row.nickname_in_map(),
+            description: row.description_in_map(),
+            ..MapRow::default()
+        }));
     }
-    for (element, helper) in &context.helpers {
+    for helper in documented.iter().filter(|row| row.address.is_none()) {
         rows.push(MapRow {
             slc: "helper".to_owned(),
-            domore: element.to_string(),
-            name: helper.nickname.clone(),
-            description: helper.text.clone(),
+            domore: helper.element.clone(),
+            name: helper.nickname_in_map(),
+            description: helper.description_in_map(),
             ..MapRow::default()
         });
     }

@@ -142,7 +142,7 @@ impl Migration {
 pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migration, MapError> {
     let facts = Facts::of(image);
     let mut places = Places::automatic(image, &facts, options.only_confirmed);
-    map_file::apply(&mut places, map)?;
+    let wishes = map_file::apply(image, &mut places, map)?;
     let plan = plan::plan(image);
     let mut context = Context::new(image, &facts, options, places);
     for (file, block) in &plan.subroutines {
@@ -163,8 +163,9 @@ pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migra
     finish(&mut context, &mut blocks, &initial, &mut rungs);
     rungs.sort_by_key(|rung| (rung.file, rung.rung));
     let notes = notes(image, &context);
-    let map = map_file::rows(image, &context);
-    let project = project::project(&context, blocks);
+    let documented = docs::documented(&context, &wishes, blocks.iter().map(|block| block.name.as_str()))?;
+    let map = map_file::rows(image, &context, &documented);
+    let project = project::project(&context, blocks, &documented);
     Ok(Migration { project, rungs, places: context.places, map, initial, notes })
 }
 

@@ -40,7 +40,7 @@ const MEMORY: [(&str, &str, Radix, u32, bool); 22] = [
 const STEP: u32 = 256;
 
 /// The project of these code blocks.
-pub(super) fn project(context: &Context<'_>, blocks: Vec<CodeBlock>) -> Project {
+pub(super) fn project(context: &Context<'_>, blocks: Vec<CodeBlock>, documented: &[docs::Documented]) -> Project {
     let mut memory: Vec<MemoryBlock> = MEMORY
         .iter()
         .map(|(name, type_word, radix, count, volatile)| {
@@ -67,6 +67,6 @@ pub(super) fn project(context: &Context<'_>, blocks: Vec<CodeBlock>) -> Project 
         Part::Memory(Section::new(memory)),
     ];
     parts.extend(blocks.into_iter().map(Part::Code));
-    parts.push(Part::Documentation(Section::new(docs::elements(context))));
+    parts.push(Part::Documentation(Section::new(docs::elements(documented))));
     Project { parts, ..Project::default() }
 }
