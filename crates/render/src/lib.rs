@@ -35,6 +35,7 @@ mod face;
 mod layout;
 mod leaf;
 mod paint;
+pub mod pdf;
 mod plain;
 mod rung;
 pub mod scene;

@@ -81,7 +81,7 @@ pub(crate) fn paint<E>(
         for (x, from, to, arrows) in &open {
             mark(&mut cells, *x, if y > *from { UP } else { 0 });
             mark(&mut cells, *x, if y < *to { DOWN } else { 0 });
-            if *arrows && y > *from && y < *to && (y - from) % ARROW_ROWS == 1 {
+            if *arrows && has_arrow(*from, *to, y) {
                 texts.push((*x, None, Cow::Borrowed("v")));
             }
         }
@@ -134,11 +134,16 @@ fn strokes_of<'a>(item: &'a Item, ascii: bool, out: &mut Vec<(usize, Stroke<'a>)
 }
 
 /// Columns of the arrow heads on a wire: evenly spread, one in the middle of a short wire.
-fn arrow_columns(x: usize, length: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn arrow_columns(x: usize, length: usize) -> impl Iterator<Item = usize> {
     let count = length.div_ceil(ARROW_COLUMNS).max(1);
     (0..count)
         .map(move |index| x + (2 * index + 1) * length / (2 * count))
         .filter(move |at| *at > x && *at < x + length)
+}
+
+/// Whether a wire downwards with arrow heads has one in row `y`.
+pub(crate) fn has_arrow(from: usize, to: usize, y: usize) -> bool {
+    y > from && y < to && (y - from) % ARROW_ROWS == 1
 }
 
 fn mark(cells: &mut [Cell], x: usize, directions: u8) {
