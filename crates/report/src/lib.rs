@@ -18,6 +18,7 @@ pub mod anchor;
 pub mod diff;
 pub mod model;
 mod options;
+pub mod pdf;
 mod rslogix;
 pub mod words;
 
