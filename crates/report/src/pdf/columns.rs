@@ -8,6 +8,8 @@ use crate::model::{ColumnKind, RowKind, Table};
 
 /// Letters of tables that are too wide, or stand side by side.
 const SMALL: f32 = 7.0;
+/// Letters of tables that would not fit side by side otherwise.
+const SMALLEST: f32 = 6.5;
 /// Between columns, in sizes of letters.
 const GAP: f32 = 0.8;
 /// From one line to the next, in sizes of letters.
@@ -72,10 +74,15 @@ impl Plan {
         let usual: f32 = wishes.iter().map(|wish| wish.usual).sum();
         let least: f32 = wishes.iter().map(|wish| wish.least).sum();
         let gaps = GAP * table.columns.len().saturating_sub(1) as f32;
-        let fitting = |strips: &usize| (usual.max(least) + gaps) * SMALL <= room(*strips);
+        let fitting = |strips: &usize| (usual.max(least) + gaps) * SMALLEST <= room(*strips);
         let side_by_side = if table.rows.len() < MANY { None } else { (2..=MOST_STRIPS).rev().find(fitting) };
         let strips = side_by_side.unwrap_or(1);
-        let size = if strips > 1 || (usual + gaps) * BODY > room(1) { SMALL } else { BODY };
+        let size = match strips {
+            1 if (usual + gaps) * BODY <= room(1) => BODY,
+            1 => SMALL,
+            // Sums of widths differ in the last digits.
+            several => SMALL.min(room(several) / (usual.max(least) + gaps)).max(SMALLEST),
+        };
         let widths = widths(&wishes, room(strips) / size - gaps);
         let mut x = 0.0;
         let place = |(width, column): (f32, &crate::model::Column)| {

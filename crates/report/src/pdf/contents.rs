@@ -68,11 +68,12 @@ impl Book<'_> {
         if entry.level == 0 {
             self.space(3.0);
         }
-        let left = self.left() + 14.0 * entry.level as f32;
-        let right = self.right();
-        let lines = plain_lines(&entry.title, letters.font, letters.size, right - left - NUMBERS - 10.0);
+        let indent = 14.0 * entry.level as f32;
+        let room = self.room() - indent - NUMBERS - 10.0;
+        let lines = plain_lines(&entry.title, letters.font, letters.size, room);
         let height = LEADING + 1.0;
         self.need(height * lines.len() as f32);
+        let (left, right) = (self.left() + indent, self.right());
         let top = self.y;
         let mut end = left;
         for line in &lines {
