@@ -90,7 +90,7 @@ const CASES: &[(&str, Case, Case)] = &[
     ("OUT11", Case(&["XIC I:0/0; OSR B3:0/1; OTE B3:0/2", "MOV 0 B3:0"], same), Case(&["XIC I:0/0; OSR B3:0/1; OTE B3:0/2", "MOV 0 B3:1"], same)),
     ("LOG01", Case(&["XIC I:0/0 BST XIO I:0/0 NXB XIC I:0/1 BND OTE B3:0/1"], same), Case(&["XIC B3:0/0; OTU B3:0/0; XIO B3:0/0; OTE B3:0/1"], same)),
     ("LOG02", Case(&["BST XIC I:0/0 NXB BND OTE B3:0/1"], same), Case(&["BST XIC I:0/0 OTE B3:0/3 NXB BND OTE B3:0/1"], same)),
-    ("LOG03", Case(&["OTE B3:0/1"], same), Case(&["BST XIC I:0/0 NXB XIC I:0/1 BND OTE B3:0/1"], same)),
+    ("LOG03", Case(&["OTE B3:0/1"], same), Case(&["BST XIC I:0/0 NXB XIC I:0/1 BND OTE B3:0/1", "OTU S:5/0"], same)),
     ("LOG04", Case(&["XIC I:0/0; XIC I:0/1; XIC I:0/0; OTE B3:0/1"], same), Case(&["BST XIC I:0/0 NXB XIC I:0/0 XIC I:0/1 BND OTE B3:0/1"], same)),
     ("LOG05", Case(&["BST XIC I:0/0 NXB XIO I:0/0 BND OTE B3:0/1"], same), Case(&["BST XIC I:0/0 XIC I:0/1 NXB XIO I:0/0 BND OTE B3:0/1"], same)),
     ("LOG06", Case(&["EQU N7:0 N7:0; OTE B3:0/1"], same), Case(&["EQU N7:0 N7:1; OTE B3:0/1"], same)),

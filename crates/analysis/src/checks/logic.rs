@@ -33,7 +33,8 @@ pub(super) const CHECKS: &[Check] = &[
         severity: Severity::Note,
         default_on: true,
         explanation: "No condition stands before the coil: an OTE makes its bit 1 in every scan, an OTL or OTU sets or clears it \
-            in every scan. Meant for always-on bits; elsewhere a condition has been lost.",
+            in every scan. Meant for always-on bits; elsewhere a condition has been lost. Settings that programs write in every \
+            scan on purpose (status file, function files, PID and message blocks) are left out.",
         find: always_driven,
     },
     Check {
@@ -277,11 +278,23 @@ fn equal_legs(context: &Context<'_>, found: &mut Found) {
     });
 }
 
+/// One finding per rung: programs often set many bits in one.
 fn always_driven(context: &Context<'_>, found: &mut Found) {
-    for step in context.steps.iter().filter(|step| matches!(step.name, "OTE" | "OTL" | "OTU") && !step.gated) {
-        if let Some(address) = context.address(step, 0) {
-            found.add(&[step.at], &address, format!("{} {address} has no condition before it", step.name));
-        }
+    let coils = context.steps.iter().filter(|step| matches!(step.name, "OTE" | "OTL" | "OTU") && !step.gated);
+    // Status bits, function files and loops have settings that programs write in every scan on purpose, S:5/0 first
+    // of all.
+    let is_setting = |address: &Address| {
+        address.file_type.is_function_file() || matches!(address.file_type, FileType::S | FileType::PD | FileType::MG)
+    };
+    let driven = coils.filter_map(|step| Some((step, context.address(step, 0).filter(|it| !is_setting(it))?)));
+    let driven: Vec<_> = driven.collect();
+    for rung in driven.chunk_by(|a, b| (a.0.at.file, a.0.at.rung) == (b.0.at.file, b.0.at.rung)) {
+        let Some((step, address)) = rung.first() else { continue };
+        let text = match rung.len() - 1 {
+            0 => format!("{} {address} has no condition before it", step.name),
+            more => format!("{} {address} and {more} more of this rung have no condition before them", step.name),
+        };
+        found.add(&[step.at], address, text);
     }
 }
 

@@ -113,8 +113,12 @@ fn overflow(context: &Context<'_>, found: &mut Found) {
     let runs = |step: &&Step<'_>| context.runs(step.at.file);
     let all: Vec<Location> = context.steps.iter().filter(sets_overflow).filter(runs).map(|step| step.at).collect();
     if !all.is_empty() {
-        let plural = if all.len() == 1 { " can" } else { "s can" };
-        let message = format!("{} math instruction{plural} set S:5/0 and nothing clears it: fault 0020", all.len());
+        let those = if all.len() == 1 {
+            "the math instruction".to_owned()
+        } else {
+            format!("one of {} math instructions", all.len())
+        };
+        let message = format!("nothing clears S:5/0: an overflow in {those} is fault 0020");
         found.add(all.get(..SAID.min(all.len())).unwrap_or(&all), "S:5/0", message);
     }
 }
