@@ -13,7 +13,7 @@ use domore::documentation::Documentation;
 use domore::instruction::{self, Effect, Entry, Flow, Kind, Role as Does, Test};
 use domore::{CodeBlock, CodeKind, Instruction, Rung};
 
-use crate::face::{Body, Face, Row, Sign};
+use crate::face::{Body, Face, Row, Sign, Text, add_labels};
 use crate::layout::{MAX_ELEMENTS, NotDrawn, Part};
 use crate::rung::{Diagram, compose, head};
 use crate::scene::{Role, Scene};
@@ -100,7 +100,7 @@ impl Source<'_> {
 
     /// Nesting is bounded by [`domore::circuit::MAX_DEPTH`].
     fn series(&self, rung: &Rung, nodes: &[Node]) -> Vec<Part> {
-        let face = |index: &usize| rung.instructions.get(*index).map(|it| self.face(it)).unwrap_or_else(empty);
+        let face = |index: &usize| rung.instructions.get(*index).map(|it| self.face(it, *index)).unwrap_or_else(empty);
         let part = |node: &Node| match node {
             Node::Instruction(index) => Part::Leaf(face(index)),
             Node::Branch(legs) => Part::Legs(legs.iter().map(|leg| self.series(rung, leg)).collect()),
@@ -118,7 +118,15 @@ impl Source<'_> {
         nodes.iter().map(part).collect()
     }
 
-    fn face(&self, instruction: &Instruction) -> Face {
+    fn face(&self, instruction: &Instruction, index: usize) -> Face {
+        let mut face = self.shape(instruction);
+        face.index = index;
+        face.words = clean(&instruction.to_string()).into_owned();
+        add_labels(&mut face.words, &face.labels);
+        face
+    }
+
+    fn shape(&self, instruction: &Instruction) -> Face {
         let Some(entry) = instruction::by_mnemonic(&instruction.mnemonic) else {
             return self.unknown(instruction);
         };
@@ -127,22 +135,20 @@ impl Source<'_> {
         if counts.contains(&instruction.operands.len())
             && let Some(sign) = sign(entry)
         {
-            return Face { labels: self.labels(instruction.operand(0)), body: self.symbol(instruction, sign), output };
+            return Face { output, labels: self.labels(instruction, 0), ..face(self.symbol(instruction, sign)) };
         }
         let owner = entry.operands.iter().position(|operand| {
             matches!(operand.role, Does::Own | Does::Write | Does::Reset | Does::ReadWrite)
                 && !matches!(operand.kind, Kind::Table(_))
         });
-        Face {
-            labels: owner.map(|index| self.labels(instruction.operand(index))).unwrap_or_default(),
-            body: Body::Box {
-                name: clean(&instruction.mnemonic).into_owned(),
-                title: entry.title.to_owned(),
-                rows: self.rows(instruction, Some(entry), owner),
-                flags: &[],
-            },
-            output,
-        }
+        let body = Body::Box {
+            name: clean(&instruction.mnemonic).into_owned(),
+            title: entry.title.to_owned(),
+            rows: self.rows(instruction, Some(entry), owner),
+            flags: &[],
+        };
+        let labels = owner.map(|index| self.labels(instruction, index)).unwrap_or_default();
+        Face { output, labels, ..face(body) }
     }
 
     /// An instruction that is not in the table: all it holds, nothing guessed.
@@ -153,17 +159,18 @@ impl Source<'_> {
             rows: self.rows(instruction, None, None),
             flags: &[],
         };
-        Face { labels: Vec::new(), body, output: None }
+        face(body)
     }
 
-    /// Description and nickname of an operand.
-    fn labels(&self, operand: &str) -> Vec<(Role, String)> {
+    /// Description and nickname of operand `index`.
+    fn labels(&self, instruction: &Instruction, index: usize) -> Vec<Text> {
+        let operand = instruction.operand(index);
         if !self.style.descriptions || operand.is_empty() {
             return Vec::new();
         }
         let shown = self.documentation.shown(operand);
-        let lines = shown.description.iter().map(|line| (Role::Description, clean(line.trim_end()).into_owned()));
-        let name = (!shown.name.is_empty()).then(|| (Role::Symbol, clean(&shown.name).into_owned()));
+        let lines = shown.description.iter().map(|line| Text::new(Role::Description, clean(line.trim_end())));
+        let name = (!shown.name.is_empty()).then(|| text(operand, index).with(Role::Symbol, clean(&shown.name)));
         lines.chain(name).collect()
     }
 
@@ -177,8 +184,10 @@ impl Source<'_> {
     }
 
     fn symbol(&self, instruction: &Instruction, sign: Sign) -> Body {
-        let second = instruction.operands.get(1).map(|operand| (Role::Address, self.named(operand)));
-        Body::Symbol { sign, above: clean(instruction.operand(0)).into_owned(), below: second.into_iter().collect() }
+        let second = instruction.operands.get(1);
+        let second = second.map(|operand| text(operand, 1).with(Role::Address, self.named(operand)));
+        let above = text(instruction.operand(0), 0).with(Role::Address, clean(instruction.operand(0)));
+        Body::Symbol { sign, above, below: second.into_iter().collect() }
     }
 
     /// The rows of a box below its title.
@@ -187,7 +196,7 @@ impl Source<'_> {
         for (index, operand) in instruction.operands.iter().enumerate() {
             let known = entry.and_then(|entry| entry.operand(index));
             let name = known.map_or_else(|| format!("Operand {}", index + 1), |known| known.name.to_owned());
-            let text = match known.map(|known| known.kind) {
+            let shown = match known.map(|known| known.kind) {
                 Some(Kind::Table(_)) => {
                     table_rows(&mut rows, name, operand);
                     continue;
@@ -201,7 +210,7 @@ impl Source<'_> {
                 _ if labelled == Some(index) => clean(operand).into_owned(),
                 _ => self.named(operand),
             };
-            rows.push(Row { name, text, role: Role::Operand, live: false });
+            rows.push(Row { name, text: text(operand, index).with(Role::Operand, shown), live: false });
         }
         rows
     }
@@ -209,8 +218,21 @@ impl Source<'_> {
 
 /// Nothing: for an index that no rung has.
 fn empty() -> Face {
-    let body = Body::Symbol { sign: Sign::Marked("?"), above: String::new(), below: Vec::new() };
-    Face { labels: Vec::new(), body, output: None }
+    face(Body::Symbol { sign: Sign::Marked("?"), above: Text::new(Role::Address, ""), below: Vec::new() })
+}
+
+/// A face without anything around its body.
+fn face(body: Body) -> Face {
+    Face { index: 0, words: String::new(), labels: Vec::new(), body, output: None, forced: None, state: None }
+}
+
+/// Operand `index` with the address it is.
+fn text(operand: &str, index: usize) -> Text {
+    // A lone name is an address as well (a stage, a timer structure); digits and quotes begin none.
+    let address = operand.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_' || c == '$');
+    let address = address && domore::address::Address::parse(operand).is_ok();
+    let link = address.then(|| clean(operand).into_owned());
+    Text { role: Role::Operand, text: clean(operand).into_owned(), operand: Some(index), link }
 }
 
 /// A constant that stands for milliseconds.
@@ -250,7 +272,7 @@ fn sign(entry: &'static Entry) -> Option<Sign> {
 fn table_rows(rows: &mut Vec<Row>, name: String, operand: &str) {
     let text = domore::text::unquote(operand);
     let text = text.as_deref().unwrap_or(operand);
-    let row = |name, text: Cow<'_, str>| Row { name, text: text.into_owned(), role: Role::Operand, live: false };
+    let row = |name, text: Cow<'_, str>| Row { name, text: Text::new(Role::Operand, text), live: false };
     let mut words = text.split_whitespace();
     let columns = words.next().and_then(|word| word.parse::<usize>().ok()).filter(|columns| *columns > 0);
     let Some(columns) = columns.filter(|_| !text.contains('"')) else {
@@ -268,6 +290,7 @@ fn table_rows(rows: &mut Vec<Row>, name: String, operand: &str) {
     }
     let more = words.chunks(columns).count().saturating_sub(TABLE_ROWS);
     if more > 0 {
-        rows.push(Row { name: String::new(), text: format!("({more} more)"), role: Role::Note, live: false });
+        let text = Text::new(Role::Note, format!("({more} more)"));
+        rows.push(Row { name: String::new(), text, live: false });
     }
 }

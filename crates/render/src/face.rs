@@ -3,19 +3,51 @@
 use instr::{Category, Drawing, Form, Kind, Position, Stored};
 use ladder::{Address, Documentation, FileType, Image, Instruction, Operand, Target, Value};
 
-use crate::Style;
 use crate::scene::Role;
+use crate::state;
 use crate::text::clean;
+use crate::{Live, Style};
 
 /// An instruction as texts, before it has a size.
 #[derive(Debug)]
 pub(crate) struct Face {
+    /// Number of the instruction in its rung.
+    pub index: usize,
+    /// The instruction in words.
+    pub words: String,
     /// Description lines, then the symbol: stand above.
-    pub labels: Vec<(Role, String)>,
+    pub labels: Vec<Text>,
     /// The drawing.
     pub body: Body,
     /// Stands at the right power rail; `None`: an instruction of which that is not known.
     pub output: Option<bool>,
+    /// See [`crate::scene::Spot::forced`].
+    pub forced: Option<bool>,
+    /// See [`crate::scene::Spot::state`].
+    pub state: Option<bool>,
+}
+
+/// A text with its meaning.
+#[derive(Clone, Debug)]
+pub(crate) struct Text {
+    pub role: Role,
+    pub text: String,
+    /// The operand it shows.
+    pub operand: Option<usize>,
+    /// The address it stands for.
+    pub link: Option<String>,
+}
+
+impl Text {
+    /// A text that stands for no operand.
+    pub(crate) fn new(role: Role, text: impl Into<String>) -> Text {
+        Text { role, text: text.into(), operand: None, link: None }
+    }
+
+    /// Another text about the same operand.
+    pub(crate) fn with(&self, role: Role, text: impl Into<String>) -> Text {
+        Text { role, text: text.into(), ..self.clone() }
+    }
 }
 
 /// The drawing of an instruction.
@@ -25,10 +57,10 @@ pub(crate) enum Body {
     Symbol {
         /// The sign on the wire.
         sign: Sign,
-        /// Address, above the wire.
-        above: String,
+        /// Address, above the wire; may be empty.
+        above: Text,
         /// Bit, module and remarks, below the wire.
-        below: Vec<(Role, String)>,
+        below: Vec<Text>,
     },
     /// Frame with rows.
     Box {
@@ -57,9 +89,7 @@ pub(crate) struct Row {
     /// Name at the left side, empty in a row that only has a value.
     pub name: String,
     /// Text at the right side.
-    pub text: String,
-    /// What the text is.
-    pub role: Role,
+    pub text: Text,
     /// `<` follows: the value comes from the data table.
     pub live: bool,
 }
@@ -73,15 +103,17 @@ pub(crate) struct Source<'a> {
     pub edited: bool,
     pub documentation: &'a Documentation,
     pub style: &'a Style,
+    /// Live values, see [`crate::Live`].
+    pub live: Option<&'a Live<'a>>,
 }
 
 impl Source<'_> {
-    /// The face of an instruction.
-    pub(crate) fn face(&self, instruction: &Instruction) -> Face {
+    /// The face of instruction `index` of the rung.
+    pub(crate) fn face(&self, instruction: &Instruction, index: usize) -> Face {
         let entry = instruction.mnemonic.name().and_then(instr::by_mnemonic);
         let form = entry.and_then(|entry| form(entry, self.image, instruction.operands.len()));
         let (Some(entry), Some(form)) = (entry, form) else {
-            return self.unknown(instruction);
+            return self.unknown(instruction, index);
         };
         let output = Some(!matches!(form.position, Position::Input | Position::RungStart));
         let known = form.operands.len() == instruction.operands.len();
@@ -92,39 +124,57 @@ impl Source<'_> {
             Drawing::Marked(letters) => Some(Sign::Marked(letters)),
             Drawing::Box { .. } => None,
         };
+        let forced = instruction.operands.first().and_then(Operand::address).and_then(|a| state::forced(self.image, a));
+        let shown = if self.style.state { state::shown(self.image, instruction) } else { None };
         let body = match (sign, instruction.operands.as_slice()) {
-            (Some(sign), []) => Body::Symbol { sign, above: String::new(), below: Vec::new() },
-            (Some(sign), [operand]) => self.symbol(sign, operand),
+            (Some(sign), []) => Body::Symbol { sign, above: Text::new(Role::Address, ""), below: Vec::new() },
+            (Some(sign), [operand]) => self.symbol(sign, operand, forced, shown),
             _ => Body::Box {
                 name: entry.mnemonic.to_owned(),
                 title: entry.title.to_owned(),
-                rows: self.rows(instruction, form),
+                rows: self.rows(instruction, form, index),
                 flags: match form.drawing {
                     Drawing::Box { flags } => flags,
                     _ => &[],
                 },
             },
         };
-        Face { labels, body, output }
+        // A box shows no force: its operand is a word, or it has several.
+        let forced = forced.filter(|_| matches!(body, Body::Symbol { .. }));
+        Face { index, words: self.words(instruction, &labels), labels, body, output, forced, state: shown }
+    }
+
+    /// Mnemonic, operands, symbol and description on one line.
+    fn words(&self, instruction: &Instruction, labels: &[Text]) -> String {
+        let mut words = clean(&instruction.mnemonic.to_string()).into_owned();
+        for text in instruction.operands.iter().map(|operand| self.text(operand)).filter(|text| !text.is_empty()) {
+            words.push(' ');
+            words.push_str(&text);
+        }
+        add_labels(&mut words, labels);
+        words
     }
 
     /// An instruction that is not in the table: everything stored, nothing guessed.
-    fn unknown(&self, instruction: &Instruction) -> Face {
+    fn unknown(&self, instruction: &Instruction, number: usize) -> Face {
         let (name, title) = match &instruction.mnemonic {
             ladder::Mnemonic::Named(name) => (clean(name).into_owned(), "(unknown instruction)".to_owned()),
             ladder::Mnemonic::Unknown(code) => ("?".to_owned(), format!("op 0x{code:02X} (unknown instruction)")),
         };
         let mut rows = Vec::new();
         for (index, operand) in instruction.operands.iter().enumerate() {
-            rows.push(Row::operand(format!("Operand {}", index + 1), self.text(operand)));
-            self.push_displayed(&mut rows, instruction, index, false);
+            let text = self.operand(operand, index);
+            rows.push(Row { name: format!("Operand {}", index + 1), text, live: false });
+            self.push_displayed(&mut rows, instruction, index, number, false);
         }
         push_setup(&mut rows, instruction);
-        Face { labels: Vec::new(), body: Body::Box { name, title, rows, flags: &[] }, output: None }
+        let body = Body::Box { name, title, rows, flags: &[] };
+        let words = self.words(instruction, &[]);
+        Face { index: number, words, labels: Vec::new(), body, output: None, forced: None, state: None }
     }
 
     /// Description and symbol of operand `index`.
-    fn labels(&self, instruction: &Instruction, index: usize) -> Vec<(Role, String)> {
+    fn labels(&self, instruction: &Instruction, index: usize) -> Vec<Text> {
         if !self.style.descriptions {
             return Vec::new();
         }
@@ -136,10 +186,18 @@ impl Source<'_> {
             _ => return Vec::new(),
         };
         let shown = self.documentation.shown(&target, instruction.mnemonic.name().unwrap_or(""));
-        let mut labels: Vec<(Role, String)> =
-            shown.description.iter().map(|line| (Role::Description, clean(line.trim_end()).into_owned())).collect();
-        labels.extend(shown.symbol.map(|symbol| (Role::Symbol, clean(&symbol).into_owned())));
+        let mut labels: Vec<Text> =
+            shown.description.iter().map(|line| Text::new(Role::Description, clean(line.trim_end()))).collect();
+        let operand = self.operand(operand, index);
+        labels.extend(shown.symbol.map(|symbol| operand.with(Role::Symbol, clean(&symbol))));
         labels
+    }
+
+    /// Operand `index` as a text with its meaning.
+    fn operand(&self, operand: &Operand, index: usize) -> Text {
+        let text = self.text(operand);
+        let link = operand.address().map(|_| text.trim_start_matches('#').to_owned());
+        Text { role: Role::Operand, text, operand: Some(index), link }
     }
 
     /// An operand as a person reads it in this program file.
@@ -151,17 +209,24 @@ impl Source<'_> {
         }
     }
 
-    fn symbol(&self, sign: Sign, operand: &Operand) -> Body {
+    fn symbol(&self, sign: Sign, operand: &Operand, forced: Option<bool>, state: Option<bool>) -> Body {
         let mut below = Vec::new();
+        let whole = self.operand(operand, 0);
         let above = match self.split(operand) {
             Some((element, bit)) => {
-                below.push((Role::Address, bit));
-                element
+                below.push(whole.with(Role::Address, bit));
+                whole.with(Role::Address, element)
             }
-            None => self.text(operand),
+            None => Text { role: Role::Address, ..whole },
         };
         if let Some(address) = operand.address() {
-            below.extend(self.module(address).into_iter().map(|(role, text)| (role, clean(&text).into_owned())));
+            below.extend(self.module(address).into_iter().map(|(role, text)| Text::new(role, clean(&text))));
+        }
+        if let Some(on) = forced {
+            below.push(Text::new(Role::Force, if on { state::FORCED_ON } else { state::FORCED_OFF }));
+        }
+        if state == Some(true) {
+            below.push(Text::new(Role::State, state::TRUE));
         }
         Body::Symbol { sign, above, below }
     }
@@ -202,28 +267,34 @@ impl Source<'_> {
     }
 
     /// The rows of a box below its title.
-    fn rows(&self, instruction: &Instruction, form: &Form) -> Vec<Row> {
+    fn rows(&self, instruction: &Instruction, form: &Form, number: usize) -> Vec<Row> {
         let mut rows = Vec::new();
         let known = form.operands.len() == instruction.operands.len();
         for (index, operand) in instruction.operands.iter().enumerate() {
             let definition = form.operands.get(index).filter(|_| known);
             let name = definition.map_or_else(|| format!("Operand {}", index + 1), |d| d.name.to_owned());
-            let text = self.text(operand);
+            let whole = self.operand(operand, index);
+            let text = &whole.text;
             match definition.map(|d| d.stored) {
+                Some(Stored::Value) if self.live_value(number, index).is_some() => {
+                    let shown = self.live_value(number, index).unwrap_or_default();
+                    rows.push(Row { name, text: whole.with(Role::Operand, shown), live: true });
+                }
                 Some(Stored::Value) if instruction.compiled => {
                     let table = self.table_value(form, &instruction.operands, index);
-                    let stale = table.as_ref().is_some_and(|value| *value != text && !text.is_empty());
+                    let stale = table.as_ref().is_some_and(|value| value != text && !text.is_empty());
                     let shown = table.unwrap_or_else(|| text.clone());
                     let live = !shown.is_empty() && !self.edited;
-                    rows.push(Row { name, text: shown, role: Role::Operand, live });
+                    rows.push(Row { name, text: whole.with(Role::Operand, shown), live });
                     if stale {
-                        rows.push(Row { name: "  last shown".into(), text, role: Role::Note, live: false });
+                        let text = Text::new(Role::Note, text.as_str());
+                        rows.push(Row { name: "  last shown".into(), text, live: false });
                     }
                 }
-                _ => rows.push(Row::operand(name, text)),
+                _ => rows.push(Row { name, text: whole, live: false }),
             }
             let valued = definition.is_some_and(|d| d.stored == Stored::SourceAndValue);
-            self.push_displayed(&mut rows, instruction, index, valued);
+            self.push_displayed(&mut rows, instruction, index, number, valued);
         }
         push_setup(&mut rows, instruction);
         rows
@@ -231,7 +302,19 @@ impl Source<'_> {
 
     /// The row with the value of operand `index`: what RSLogix last displayed, else for an operand
     /// whose box has a place for one (`valued`) what the data table holds at a direct address.
-    fn push_displayed(&self, rows: &mut Vec<Row>, instruction: &Instruction, index: usize, valued: bool) {
+    fn push_displayed(
+        &self,
+        rows: &mut Vec<Row>,
+        instruction: &Instruction,
+        index: usize,
+        number: usize,
+        valued: bool,
+    ) {
+        let text = |value| Text { operand: Some(index), ..Text::new(Role::Value, value) };
+        if valued && let Some(value) = self.live_value(number, index) {
+            rows.push(Row { name: String::new(), text: text(value), live: true });
+            return;
+        }
         if !self.style.values {
             return;
         }
@@ -244,7 +327,13 @@ impl Source<'_> {
             },
         };
         let live = instruction.compiled && !self.edited;
-        rows.push(Row { name: String::new(), text: value, role: Role::Value, live });
+        rows.push(Row { name: String::new(), text: text(value), live });
+    }
+
+    /// The live value of an operand.
+    fn live_value(&self, instruction: usize, operand: usize) -> Option<String> {
+        let value = (self.live?.value)(instruction, operand)?;
+        Some(clean(value.trim()).into_owned())
     }
 
     /// The value in the data table at a direct address that names one number.
@@ -272,16 +361,21 @@ impl Source<'_> {
     }
 }
 
-impl Row {
-    fn operand(name: String, text: String) -> Row {
-        Row { name, text, role: Role::Operand, live: false }
+/// Symbol and description behind an instruction in words.
+pub(crate) fn add_labels(words: &mut String, labels: &[Text]) {
+    // The symbol stands last above an instruction, and first in words.
+    let of = |symbol: bool| labels.iter().filter(move |label| (label.role == Role::Symbol) == symbol);
+    for label in of(true).chain(of(false)).filter(|label| !label.text.trim().is_empty()) {
+        words.push_str(", ");
+        words.push_str(label.text.trim());
     }
 }
 
 /// Settings behind the set-up screen of a MSG, which paper does not show in the box.
 fn push_setup(rows: &mut Vec<Row>, instruction: &Instruction) {
     for (name, value) in instruction.message.iter().flat_map(|setup| &setup.settings) {
-        rows.push(Row::operand(clean(name).into_owned(), clean(value).into_owned()));
+        let text = Text::new(Role::Operand, clean(value));
+        rows.push(Row { name: clean(name).into_owned(), text, live: false });
     }
 }
 

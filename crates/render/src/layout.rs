@@ -6,8 +6,8 @@
 use ladder::{Element, Series};
 
 use crate::face::{Face, Source};
-use crate::leaf::{LEAF_MIN, Leaf, leaf, leaf_with_legs};
-use crate::scene::{Direction, Item, Shape};
+use crate::leaf::{IN, LEAF_MIN, Leaf, OUT, leaf, leaf_with_legs};
+use crate::scene::{Direction, Item, Node, Of, Shape, Spot};
 
 /// What stands on a wire, in a form that knows no dialect.
 #[derive(Debug)]
@@ -59,15 +59,25 @@ pub(crate) fn is_drawable(series: &Series) -> bool {
     true
 }
 
-/// The parts of a series.
-pub(crate) fn parts(source: &Source<'_>, series: &Series, depth: usize) -> Result<Vec<Part>, NotDrawn> {
+/// The parts of a series. `next` is the number of the next instruction.
+pub(crate) fn parts(
+    source: &Source<'_>,
+    series: &Series,
+    next: &mut usize,
+    depth: usize,
+) -> Result<Vec<Part>, NotDrawn> {
     if depth > MAX_DEPTH {
         return Err(NotDrawn::Depth);
     }
     let part = |element: &Element| match element {
-        Element::Instruction(instruction) => Ok(Part::Leaf(source.face(instruction))),
+        Element::Instruction(instruction) => {
+            let index = *next;
+            *next += 1;
+            Ok(Part::Leaf(source.face(instruction, index)))
+        }
         Element::Branch(branch) => {
-            branch.legs.iter().map(|leg| parts(source, leg, depth + 1)).collect::<Result<_, _>>().map(Part::Legs)
+            let legs = branch.legs.iter().map(|leg| parts(source, leg, next, depth + 1));
+            legs.collect::<Result<_, _>>().map(Part::Legs)
         }
     };
     series.iter().map(part).collect()
@@ -92,11 +102,12 @@ struct Block {
 }
 
 enum Content {
-    Leaf(Vec<Item>),
+    Leaf(Spot, Vec<Item>),
     Legs(Vec<Measured>),
     /// Ways to the legs of a box, and the box with its columns and the row of its first leg.
     Box {
         ways: Vec<Measured>,
+        spot: Spot,
         items: Vec<Item>,
         width: usize,
         first: usize,
@@ -140,7 +151,7 @@ pub(crate) fn measure(series: &[Part], limit: usize, depth: usize) -> Result<Mea
                 let Leaf { width, above, below, items } = leaf(face, inner);
                 // Rungs end in outputs, so an unknown instruction behind conditions is taken for one.
                 let output = face.output.unwrap_or(index > 0 && index + 1 == series.len());
-                Block { width, above, below, output, content: Content::Leaf(items) }
+                Block { width, above, below, output, content: Content::Leaf(spot(face), items) }
             }
             Part::Legs(legs) => measure_branch(legs, inner, depth)?,
             Part::Box(face, legs) => measure_box(face, legs, inner, depth)?,
@@ -196,7 +207,7 @@ fn measure_box(face: &Face, legs: &[(&'static str, Vec<Part>)], limit: usize, de
         above: own_above.max(above.saturating_sub(first)),
         below: bottom.max(first + below),
         output: true,
-        content: Content::Box { ways, items, width, first: above },
+        content: Content::Box { ways, spot: spot(face), items, width, first: above },
     })
 }
 
@@ -251,30 +262,102 @@ impl Line {
     }
 }
 
-/// Places a series whose wire enters at column `x` of row `y` and leaves at column `x + room`;
-/// returns the row it leaves on.
-pub(crate) fn place(items: &mut Vec<Item>, series: Measured, x: usize, y: usize, room: usize) -> usize {
+/// What a drawing becomes while it is placed.
+#[derive(Debug)]
+pub(crate) struct Drawing {
+    /// See [`crate::scene::Scene::items`].
+    pub items: Vec<Item>,
+    /// See [`crate::scene::Scene::instructions`].
+    pub instructions: Vec<Spot>,
+    /// See [`crate::scene::Scene::shorts`].
+    pub shorts: Vec<(Node, Node)>,
+    nodes: Node,
+}
+
+/// The wire at the left rail.
+pub(crate) const LEFT: Node = 0;
+/// The wire at the right rail.
+pub(crate) const RIGHT: Node = 1;
+
+impl Drawing {
+    /// With these items already.
+    pub(crate) fn new(items: Vec<Item>) -> Drawing {
+        Drawing { items, instructions: Vec::new(), shorts: Vec::new(), nodes: RIGHT + 1 }
+    }
+
+    /// A wire that has no number yet.
+    fn node(&mut self) -> Node {
+        self.nodes += 1;
+        self.nodes - 1
+    }
+
+    fn wire(&mut self, item: Item, node: Node) {
+        self.items.push(item.on(node));
+    }
+
+    /// An instruction and its items, between wires that enter and the one that leaves.
+    fn leaf(&mut self, mut spot: Spot, own: Vec<Item>, (x, y): (usize, usize), enter: &[Node], leave: Node) {
+        spot.enters = enter.first().copied().unwrap_or(LEFT);
+        spot.leaves = leave;
+        self.instructions.push(spot);
+        self.items.extend(own.into_iter().map(|item| {
+            let mut item = item.moved(x, y);
+            if let Of::Node(node) = &mut item.of {
+                let entering = node.checked_sub(IN).and_then(|leg| enter.get(leg)).copied();
+                *node = if *node == OUT { leave } else { entering.unwrap_or(LEFT) };
+            }
+            item
+        }));
+    }
+}
+
+/// An instruction that is not placed yet.
+fn spot(face: &Face) -> Spot {
+    let Face { index, ref words, forced, state, .. } = *face;
+    Spot { index, title: words.clone(), enters: LEFT, leaves: RIGHT, forced, state }
+}
+
+/// Where a series goes: its wire enters at column `x` of row `y` and leaves at column `x + room`.
+#[derive(Clone, Copy)]
+pub(crate) struct Way {
+    pub x: usize,
+    pub y: usize,
+    pub room: usize,
+    /// The wire that enters.
+    pub enter: Node,
+    /// The wire that leaves.
+    pub leave: Node,
+}
+
+/// Places a series; returns the row it leaves on.
+pub(crate) fn place(drawing: &mut Drawing, series: Measured, way: Way) -> usize {
+    let Way { x, y, room, .. } = way;
     let mut row = y;
     let mut start = x;
+    let mut node = way.enter;
     let mut lines = series.lines.into_iter();
     while let Some(line) = lines.next() {
         let Some(next) = lines.as_slice().first() else {
-            place_last(items, line, start, row, x + room);
+            place_last(
+                drawing,
+                line,
+                Way { x: start, y: row, room: (x + room).saturating_sub(start), enter: node, ..way },
+            );
             break;
         };
         let end = start + line.width;
         let below = line.below;
-        place_blocks(items, line.blocks, start, row);
+        (_, node) = place_blocks(drawing, line.blocks, start, row, node, None);
         // Outputs alone on the last line stand at the right rail; the wire goes there directly.
         let alone = lines.len() == 1 && next.right == 0;
         let back = if alone { (x + room).saturating_sub(next.width + 1).max(x) } else { x + INDENT - 1 };
         let turn = row + below + 1;
         let next_row = turn + 1 + next.above;
-        items.push(Item { x: end, y: row, shape: Shape::Down { length: turn - row, arrows: true } });
+        drawing.wire(Item::new(end, row, Shape::Down { length: turn - row, arrows: true }), node);
         let (from, to, arrow) = if back <= end { (back, end, Direction::Left) } else { (end, back, Direction::Right) };
-        items.push(Item { x: from, y: turn, shape: Shape::Across { length: to - from, arrows: Some(arrow) } });
-        items.push(Item::down(back, turn, next_row));
-        items.push(Item::across(back, back + 1, next_row));
+        drawing.wire(Item::new(from, turn, Shape::Across { length: to - from, arrows: Some(arrow) }), node);
+        drawing.wire(Item::down(back, turn, next_row), node);
+        drawing.wire(Item::across(back, back + 1, next_row), node);
         start = back + 1;
         row = next_row;
     }
@@ -282,48 +365,73 @@ pub(crate) fn place(items: &mut Vec<Item>, series: Measured, x: usize, y: usize,
 }
 
 /// The last line: conditions at the left, outputs at the right, wire between.
-fn place_last(items: &mut Vec<Item>, line: Line, start: usize, y: usize, end: usize) {
+fn place_last(drawing: &mut Drawing, line: Line, way: Way) {
+    let Way { x, y, room, enter, leave } = way;
     let Line { mut blocks, right, .. } = line;
+    let end = x + room;
     let mut outputs = blocks.split_off(right.min(blocks.len()));
     let outputs_width: usize = outputs.iter().map(|block| block.width).sum();
-    let left_end = place_blocks(items, blocks, start, y);
+    if blocks.is_empty() && outputs.is_empty() {
+        drawing.shorts.push((enter, leave));
+    }
+    let last = outputs.is_empty().then_some(leave);
+    let (left_end, node) = place_blocks(drawing, blocks, x, y, enter, last);
     if let [Block { content: Content::Box { .. }, width, .. }] = outputs.as_mut_slice() {
         // Its ways come from the left rail, wherever the box stands.
         *width = end.saturating_sub(left_end).max(*width);
-        place_blocks(items, outputs, left_end, y);
+        place_blocks(drawing, outputs, left_end, y, node, Some(leave));
         return;
     }
     let right_start = end.saturating_sub(outputs_width).max(left_end);
-    items.push(Item::across(left_end, right_start, y));
-    place_blocks(items, outputs, right_start, y);
+    drawing.wire(Item::across(left_end, right_start, y), node);
+    place_blocks(drawing, outputs, right_start, y, node, Some(leave));
 }
 
-/// Blocks next to each other; returns the column after them.
-fn place_blocks(items: &mut Vec<Item>, blocks: Vec<Block>, mut x: usize, y: usize) -> usize {
-    for block in blocks {
+/// Blocks next to each other; returns the column after them and the wire that leaves them. `last` is
+/// that wire where it has a number.
+fn place_blocks(
+    drawing: &mut Drawing,
+    blocks: Vec<Block>,
+    mut x: usize,
+    y: usize,
+    enter: Node,
+    last: Option<Node>,
+) -> (usize, Node) {
+    let mut node = enter;
+    let count = blocks.len();
+    for (index, block) in blocks.into_iter().enumerate() {
         let top = y.saturating_sub(block.above);
+        let leave = match last.filter(|_| index + 1 == count) {
+            Some(last) => last,
+            None => drawing.node(),
+        };
         match block.content {
-            Content::Leaf(own) => items.extend(own.into_iter().map(|item| item.moved(x, top))),
-            Content::Legs(legs) => place_legs(items, legs, x, y, block.width),
-            Content::Box { ways, items: own, width, first } => {
+            Content::Leaf(spot, own) => drawing.leaf(spot, own, (x, top), &[node], leave),
+            Content::Legs(legs) => {
+                place_legs(drawing, legs, Way { x, y, room: block.width, enter: node, leave });
+            }
+            Content::Box { ways, spot, items: own, width, first } => {
                 let at = x + block.width - width;
-                let row = place_ways(items, ways, x, y, at);
-                items.extend(own.into_iter().map(|item| item.moved(at, row.saturating_sub(first))));
+                let (row, ends) = place_ways(drawing, ways, x, y, at, node);
+                drawing.leaf(spot, own, (at, row.saturating_sub(first)), &ends, leave);
             }
         }
+        node = leave;
         x += block.width;
     }
-    x
+    (x, node)
 }
 
-fn place_legs(items: &mut Vec<Item>, legs: Vec<Measured>, x: usize, y: usize, width: usize) {
+fn place_legs(drawing: &mut Drawing, legs: Vec<Measured>, way: Way) {
+    let Way { x, y, room: width, enter, leave } = way;
     let (left, right) = (x + 1, x + width - 2);
     if legs.is_empty() {
-        items.push(Item::across(x, x + width, y));
+        drawing.shorts.push((enter, leave));
+        drawing.wire(Item::across(x, x + width, y), enter);
         return;
     }
-    items.push(Item::across(x, left, y));
-    items.push(Item::across(right, x + width, y));
+    drawing.wire(Item::across(x, left, y), enter);
+    drawing.wire(Item::across(right, x + width, y), leave);
     let mut entry = y;
     let mut last = (y, y);
     let mut bottom = None;
@@ -332,30 +440,42 @@ fn place_legs(items: &mut Vec<Item>, legs: Vec<Measured>, x: usize, y: usize, wi
             entry = bottom + 2 + leg.above;
         }
         bottom = Some(entry + leg.below);
-        items.push(Item::across(left, left + 1, entry));
-        let exit = place(items, leg, left + 1, entry, right - left - 1);
+        drawing.wire(Item::across(left, left + 1, entry), enter);
+        let exit = place(drawing, leg, Way { x: left + 1, y: entry, room: right - left - 1, enter, leave });
         last = (entry, exit);
     }
-    items.push(Item::down(left, y, last.0));
-    items.push(Item::down(right, y, last.1));
+    drawing.wire(Item::down(left, y, last.0), enter);
+    drawing.wire(Item::down(right, y, last.1), leave);
 }
 
-/// Ways from a rail at the left side to column `end`; returns the row on which the first one ends.
-fn place_ways(items: &mut Vec<Item>, ways: Vec<Measured>, x: usize, y: usize, end: usize) -> usize {
+/// Ways from a rail at the left side to column `end`; returns the row on which the first one ends, and
+/// the wires at their ends.
+fn place_ways(
+    drawing: &mut Drawing,
+    ways: Vec<Measured>,
+    x: usize,
+    y: usize,
+    end: usize,
+    enter: Node,
+) -> (usize, Vec<Node>) {
     let left = x + 1;
-    items.push(Item::across(x, left, y));
+    drawing.wire(Item::across(x, left, y), enter);
     let mut entry = y;
     let mut bottom = None;
     let mut first = None;
+    let mut ends = Vec::with_capacity(ways.len());
     for way in ways {
         if let Some(bottom) = bottom {
             entry = bottom + 2 + way.above;
         }
         bottom = Some(entry + way.below);
-        items.push(Item::across(left, left + 1, entry));
-        let row = place(items, way, left + 1, entry, end.saturating_sub(left + 1));
+        drawing.wire(Item::across(left, left + 1, entry), enter);
+        let leave = drawing.node();
+        let room = end.saturating_sub(left + 1);
+        let row = place(drawing, way, Way { x: left + 1, y: entry, room, enter, leave });
+        ends.push(leave);
         first.get_or_insert(row);
     }
-    items.push(Item::down(left, y, entry));
-    first.unwrap_or(y)
+    drawing.wire(Item::down(left, y, entry), enter);
+    (first.unwrap_or(y), ends)
 }

@@ -1,8 +1,14 @@
 //! The size and the items of one instruction.
 
-use crate::face::{Body, Face, Row, Sign};
-use crate::scene::{Item, Role, Shape};
+use crate::face::{Body, Face, Row, Sign, Text};
+use crate::scene::{Item, Node, Of, Role, Shape};
 use crate::text::{width, wrap};
+
+/// In a leaf, before it is placed: the wire that leaves it. Wires that enter have the following
+/// numbers, one for each leg.
+pub(crate) const OUT: Node = 0;
+/// The wire that enters first.
+pub(crate) const IN: Node = 1;
 
 /// Narrowest place an instruction is drawn in; texts that need more are wrapped.
 pub(crate) const LEAF_MIN: usize = 18;
@@ -29,48 +35,63 @@ pub(crate) struct Leaf {
 
 /// Draws a face in at most `limit` columns, which are at least [`LEAF_MIN`].
 pub(crate) fn leaf(face: &Face, limit: usize) -> Leaf {
-    let limit = limit.max(LEAF_MIN);
-    match &face.body {
-        Body::Symbol { sign, above, below } => symbol(&face.labels, sign, above, below, limit),
-        Body::Box { name, title, rows, flags } => boxed(&face.labels, name, title, rows, flags, &[], limit),
-    }
+    leaf_with_legs(face, &[], limit)
 }
 
 /// Draws a box whose legs enter at its left side: name and row of each, from the row of the first.
 pub(crate) fn leaf_with_legs(face: &Face, legs: &[(&'static str, usize)], limit: usize) -> Leaf {
     let limit = limit.max(LEAF_MIN);
-    match &face.body {
-        Body::Symbol { .. } => leaf(face, limit),
+    let mut leaf = match &face.body {
+        Body::Symbol { sign, above, below } => symbol(&face.labels, sign, above, below, limit),
         Body::Box { name, title, rows, flags } => boxed(&face.labels, name, title, rows, flags, legs, limit),
+    };
+    for item in &mut leaf.items {
+        match &mut item.of {
+            Of::Instruction { index, .. } => *index = face.index,
+            of @ Of::Rung => *of = Of::Instruction { index: face.index, operand: None, link: None },
+            Of::Node(_) => {}
+        }
     }
+    // Wires first, so that all of an instruction's own items follow each other.
+    leaf.items.sort_by_key(|item| item.instruction().is_some());
+    leaf
 }
 
-fn wrapped(lines: &[(Role, String)], limit: usize) -> Vec<(Role, String)> {
-    lines.iter().flat_map(|(role, text)| wrap(text, limit).into_iter().map(|line| (*role, line))).collect()
+fn wrapped<'a>(texts: impl IntoIterator<Item = &'a Text>, limit: usize) -> Vec<Text> {
+    texts
+        .into_iter()
+        .flat_map(|text| wrap(&text.text, limit).into_iter().map(|line| text.with(text.role, line)))
+        .collect()
 }
 
-fn widest(lines: &[(Role, String)]) -> usize {
-    lines.iter().map(|(_, text)| width(text)).max().unwrap_or(0)
+fn widest(lines: &[Text]) -> usize {
+    lines.iter().map(|text| width(&text.text)).max().unwrap_or(0)
+}
+
+/// The item of a text; the number of its instruction is filled in later.
+fn item(x: usize, y: usize, text: Text) -> Item {
+    let of = Of::Instruction { index: 0, operand: text.operand, link: text.link };
+    Item { x, y, shape: Shape::Text(text.role, text.text), of }
 }
 
 /// Lines from row `y` on, as one block or each centred, between columns 1 and `1 + inner`.
-fn stack(items: &mut Vec<Item>, lines: Vec<(Role, String)>, y: usize, inner: usize, centred: bool) {
+fn stack(items: &mut Vec<Item>, lines: Vec<Text>, y: usize, inner: usize, centred: bool) {
     let all = widest(&lines);
-    for (row, (role, text)) in lines.into_iter().enumerate() {
-        let own = if centred { width(&text) } else { all };
+    for (row, text) in lines.into_iter().enumerate() {
+        let own = if centred { width(&text.text) } else { all };
         // Rounded up: a two-letter member stands under the middle of a contact like one digit.
         let x = 1 + inner.saturating_sub(own).div_ceil(2);
-        if !text.is_empty() {
-            items.push(Item::text(x, y + row, role, text));
+        if !text.text.is_empty() {
+            items.push(item(x, y + row, text));
         }
     }
 }
 
 /// A contact or coil: symbol and address above, bit and module below, everything about one axis.
-fn symbol(labels: &[(Role, String)], sign: &Sign, above: &str, below: &[(Role, String)], limit: usize) -> Leaf {
+fn symbol(labels: &[Text], sign: &Sign, above: &Text, below: &[Text], limit: usize) -> Leaf {
     let room = limit - 2;
     let labels = wrapped(labels, room);
-    let address = if above.is_empty() { Vec::new() } else { wrapped(&[(Role::Address, above.to_owned())], room) };
+    let address = wrapped([above].into_iter().filter(|above| !above.text.is_empty()), room);
     let below = wrapped(below, room);
     let (sign_width, shape) = match sign {
         Sign::Contact { closed } => (3, Shape::Contact { closed: *closed }),
@@ -86,9 +107,9 @@ fn symbol(labels: &[(Role, String)], sign: &Sign, above: &str, below: &[(Role, S
     let wire = labels.len() + address.len();
     let sign_at = 1 + (inner - sign_width) / 2;
     let mut leaf = Leaf { width: inner + 2, above: wire, below: below.len(), items: Vec::new() };
-    leaf.items.push(Item::across(0, sign_at, wire));
-    leaf.items.push(Item { x: sign_at, y: wire, shape });
-    leaf.items.push(Item::across(sign_at + sign_width - 1, inner + 2, wire));
+    leaf.items.push(Item::across(0, sign_at, wire).on(IN));
+    leaf.items.push(Item::new(sign_at, wire, shape));
+    leaf.items.push(Item::across(sign_at + sign_width - 1, inner + 2, wire).on(OUT));
     let address_at = labels.len();
     stack(&mut leaf.items, labels, 0, inner, false);
     stack(&mut leaf.items, address, address_at, inner, true);
@@ -100,13 +121,13 @@ fn symbol(labels: &[(Role, String)], sign: &Sign, above: &str, below: &[(Role, S
 enum Line {
     /// From the left side.
     Left(Role, String),
-    /// Name at the left, text at the right side.
-    Pair(String, Role, String, bool),
+    /// Name at the left, text at the right side; whether `<` follows.
+    Pair(String, Text, bool),
 }
 
 /// A frame with its rows; the wire enters at the row of the title.
 fn boxed(
-    labels: &[(Role, String)],
+    labels: &[Text],
     name: &str,
     title: &str,
     rows: &[Row],
@@ -137,23 +158,27 @@ fn boxed(
     leaf.width = (1 + frame + flag_width + 1).max(widest(&labels) + 2);
 
     let items = &mut leaf.items;
-    for row in legs.iter().map(|(_, row)| *row).chain(legs.is_empty().then_some(0)) {
-        items.push(Item::across(0, 1, wire + row));
+    for (leg, row) in legs.iter().map(|(_, row)| *row).chain(legs.is_empty().then_some(0)).enumerate() {
+        items.push(Item::across(0, 1, wire + row).on(IN + leg));
     }
     for (name, row) in legs {
         items.push(Item::text(3, wire + row, Role::Name, *name));
     }
-    items.push(Item { x: 1, y: top, shape: Shape::Frame { width: frame, height: count + 2, name: side } });
-    items.push(Item::across(frame, leaf.width, wire));
+    items.push(Item::new(1, top, Shape::Frame { width: frame, height: count + 2, name: side }));
+    // A wire ends where a flag stands on it.
+    let (mut from, flag_at) = (frame, frame + 2);
     for (index, flag) in flags.iter().enumerate() {
         let y = wire + 2 * index;
-        items.push(Item { x: frame + 2, y, shape: Shape::Coil((*flag).to_owned()) });
-        if index > 0 {
-            items.push(Item::across(frame, frame + flag_width, y));
+        let wire = Item::across(frame, flag_at, y);
+        items.push(if index == 0 { wire.on(OUT) } else { wire });
+        items.push(Item::new(flag_at, y, Shape::Coil((*flag).to_owned())));
+        if index == 0 {
+            from = flag_at + flag.len() + 1;
         }
     }
-    for (row, (role, text)) in labels.into_iter().enumerate() {
-        items.push(Item::text(1, row, role, text));
+    items.push(Item::across(from, leaf.width, wire).on(OUT));
+    for (row, text) in labels.into_iter().enumerate().filter(|(_, text)| !text.text.is_empty()) {
+        items.push(item(1, row, text));
     }
     let extra = extra.into_iter().map(|text| Line::Left(Role::BoxTitle, text));
     for (row, line) in extra.chain(lines).enumerate() {
@@ -167,18 +192,18 @@ fn boxed(
 fn lines(title: &str, rows: &[Row], room: usize) -> Vec<Line> {
     let mut lines: Vec<Line> = wrap(title, room).into_iter().map(|line| Line::Left(Role::BoxTitle, line)).collect();
     for row in rows {
-        let gap = if row.name.is_empty() || row.text.is_empty() { 0 } else { 2 };
-        if width(&row.name) + gap + width(&row.text) < room {
-            lines.push(Line::Pair(row.name.clone(), row.role, row.text.clone(), row.live));
+        let gap = if row.name.is_empty() || row.text.text.is_empty() { 0 } else { 2 };
+        if width(&row.name) + gap + width(&row.text.text) < room {
+            lines.push(Line::Pair(row.name.clone(), row.text.clone(), row.live));
             continue;
         }
         if !row.name.is_empty() {
             lines.extend(wrap(&row.name, room).into_iter().map(|line| Line::Left(Role::Name, line)));
         }
-        let parts = wrap(&row.text, room - 1);
+        let parts = wrapped([&row.text], room - 1);
         let last = parts.len() - 1;
         for (index, part) in parts.into_iter().enumerate() {
-            lines.push(Line::Pair(String::new(), row.role, part, row.live && index == last));
+            lines.push(Line::Pair(String::new(), part, row.live && index == last));
         }
     }
     lines
@@ -188,8 +213,8 @@ impl Line {
     fn width(&self) -> usize {
         match self {
             Line::Left(_, text) => width(text),
-            Line::Pair(name, _, text, _) if text.is_empty() => width(name),
-            Line::Pair(name, _, text, _) => width(name) + 2 * usize::from(!name.is_empty()) + width(text) + 1,
+            Line::Pair(name, text, _) if text.text.is_empty() => width(name),
+            Line::Pair(name, text, _) => width(name) + 2 * usize::from(!name.is_empty()) + width(&text.text) + 1,
         }
     }
 
@@ -197,14 +222,14 @@ impl Line {
         let left = left + 3;
         match self {
             Line::Left(role, text) => items.push(Item::text(left, y, role, text)),
-            Line::Pair(name, role, text, live) => {
+            Line::Pair(name, mut text, live) => {
                 if !name.is_empty() {
                     items.push(Item::text(left, y, Role::Name, name));
                 }
-                if !text.is_empty() {
-                    let x = left + room.saturating_sub(width(&text) + 1);
-                    let text = if live { text + "<" } else { text };
-                    items.push(Item::text(x, y, role, text));
+                if !text.text.is_empty() {
+                    let x = left + room.saturating_sub(width(&text.text) + 1);
+                    text.text.push_str(if live { "<" } else { "" });
+                    items.push(item(x, y, text));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Rungs drawn the way RSLogix prints them, as terminal text.
+//! Rungs drawn the way RSLogix prints them, as terminal text and SVG.
 //!
 //! ```
 //! use ladder::{Documentation, Element, Image, Instruction, Mnemonic, Operand, ProgramFile, ProgramFileKind, Rung};
@@ -24,7 +24,8 @@
 //! ```
 //!
 //! Layout is separate from painting: [`scene()`] gives the items of a rung with their places on a
-//! grid, which any other painter can use; [`rung()`] paints them as text. This crate reads no files and
+//! grid; [`rung()`] paints them as text, [`svg::drawing`] as SVG (see there for links, marks and live state),
+//! and [`figure::figure`] gives strokes, areas and texts in units for any other medium. This crate reads no files and
 //! knows no terminal: width and colour are given in [`Style`]. Rungs of Do-more projects are in [`domore`].
 
 // A panic in a reader loses what was read: input must end in a value or a located error.
@@ -32,6 +33,7 @@
 
 pub mod domore;
 mod face;
+pub mod figure;
 mod layout;
 mod leaf;
 mod paint;
@@ -39,6 +41,8 @@ pub mod pdf;
 mod plain;
 mod rung;
 pub mod scene;
+mod state;
+pub mod svg;
 mod text;
 
 pub use text::clean;
@@ -71,6 +75,9 @@ pub struct Style {
     pub comments: bool,
     /// Bits below contacts and coils, elements above, as on paper; `false`: the whole address above.
     pub split_bits: bool,
+    /// Contacts that conduct and coils that are on, by the bits in the data tables of the image, as
+    /// RSLogix highlights them. Off: a drawing says nothing about them.
+    pub state: bool,
 }
 
 impl Default for Style {
@@ -83,11 +90,30 @@ impl Default for Style {
             descriptions: true,
             comments: true,
             split_bits: true,
+            state: false,
         }
     }
 }
 
+/// Values of a running program, in place of those a project file holds.
+pub struct Live<'a> {
+    /// The value of an operand, by the number of the instruction in its rung and that of the operand;
+    /// `None`: as without live values.
+    pub value: &'a dyn Fn(usize, usize) -> Option<String>,
+}
+
+impl std::fmt::Debug for Live<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Live")
+    }
+}
+
 impl Style {
+    /// For SVG, HTML and PDF: whole addresses at contacts and coils, so that they can be searched.
+    pub fn graphic(width: usize) -> Style {
+        Style { width, split_bits: false, ..Style::default() }
+    }
+
     fn columns(&self) -> usize {
         self.width.clamp(MIN_WIDTH, MAX_WIDTH)
     }
@@ -115,8 +141,31 @@ pub fn scene(
     documentation: &Documentation,
     style: &Style,
 ) -> scene::Scene {
+    laid_out(image, file, index, documentation, style, None)
+}
+
+/// As [`scene()`], with values of a running program at the operands.
+pub fn live_scene(
+    image: &Image,
+    file: &ProgramFile,
+    index: usize,
+    documentation: &Documentation,
+    style: &Style,
+    live: &Live<'_>,
+) -> scene::Scene {
+    laid_out(image, file, index, documentation, style, Some(live))
+}
+
+fn laid_out(
+    image: &Image,
+    file: &ProgramFile,
+    index: usize,
+    documentation: &Documentation,
+    style: &Style,
+    live: Option<&Live<'_>>,
+) -> scene::Scene {
     let Some(rung) = file.rungs.get(index) else { return scene::Scene::default() };
-    let source = face::Source { image, file: file.number, edited: rung.edited, documentation, style };
+    let source = face::Source { image, file: file.number, edited: rung.edited, documentation, style, live };
     rung::scene(&source, file, index, rung)
 }
 

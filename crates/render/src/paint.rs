@@ -97,7 +97,7 @@ pub(crate) fn paint<E>(
 }
 
 fn strokes_of<'a>(item: &'a Item, ascii: bool, out: &mut Vec<(usize, Stroke<'a>)>) {
-    let Item { x, y, ref shape } = *item;
+    let Item { x, y, ref shape, .. } = *item;
     let mut text = |x, role, text| out.push((y, Stroke::Text { x, role, text }));
     match shape {
         Shape::Text(role, content) => text(x, Some(*role), Cow::Borrowed(content)),
@@ -131,6 +131,11 @@ fn strokes_of<'a>(item: &'a Item, ascii: bool, out: &mut Vec<(usize, Stroke<'a>)
             }
         }
     }
+}
+
+/// Rows of the arrow heads on a wire downwards.
+pub(crate) fn arrow_rows(from: usize, to: usize) -> impl Iterator<Item = usize> {
+    (from + 1..to).step_by(ARROW_ROWS)
 }
 
 /// Columns of the arrow heads on a wire: evenly spread, one in the middle of a short wire.
@@ -206,6 +211,8 @@ fn escape(role: Role) -> &'static str {
         Role::Symbol => "\x1B[0;32m",
         Role::Comment | Role::Description => "\x1B[0;33m",
         Role::Note => "\x1B[0;31m",
+        Role::Force => "\x1B[0;1;31m",
+        Role::State => "\x1B[0;1;32m",
         Role::Mnemonic => "\x1B[0;1m",
         Role::Address | Role::Module | Role::BoxTitle | Role::Name | Role::Operand | Role::Value => "",
     }

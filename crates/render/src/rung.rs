@@ -6,7 +6,7 @@ use ladder::{ProgramFile, ProgramFileKind, Rung};
 
 use crate::Style;
 use crate::face::Source;
-use crate::layout::{NotDrawn, Part, is_drawable, measure, parts, place};
+use crate::layout::{Drawing, LEFT, NotDrawn, Part, RIGHT, Way, is_drawable, measure, parts, place};
 use crate::plain::words;
 use crate::scene::{Item, Role, Scene, Shape};
 use crate::text::{clean, width, wrap};
@@ -39,7 +39,7 @@ pub(crate) struct Diagram<'a> {
 pub(crate) fn scene(source: &Source<'_>, file: &ProgramFile, index: usize, rung: &Rung) -> Scene {
     let digits = number_columns(file);
     let comment = rung.comment.as_ref();
-    let parts = if is_drawable(&rung.series) { parts(source, &rung.series, 0) } else { Err(NotDrawn::Size) };
+    let parts = if is_drawable(&rung.series) { parts(source, &rung.series, &mut 0, 0) } else { Err(NotDrawn::Size) };
     let diagram = Diagram {
         number: format!("{index:0digits$}"),
         title: comment.map_or("", |comment| comment.title.as_str()),
@@ -77,26 +77,28 @@ pub(crate) fn compose(diagram: Diagram<'_>, style: &Style) -> Scene {
         }
     }
     let room = right - left - 1;
+    let mut drawing = Drawing::new(items);
     let (number_row, bottom) = match diagram.parts.and_then(|parts| measure(&parts, room, 0)) {
         Ok(series) => {
             let row = top + series.above;
             let bottom = row + series.below;
-            items.push(Item::across(left, left + 1, row));
-            place(&mut items, series, left + 1, row, room);
+            drawing.items.push(Item::across(left, left + 1, row).on(LEFT));
+            place(&mut drawing, series, Way { x: left + 1, y: row, room, enter: LEFT, leave: RIGHT });
             (row, bottom)
         }
-        Err(reason) => (top, place_words(&mut items, reason, &(diagram.words)(), left, top, room)),
+        Err(reason) => (top, place_words(&mut drawing.items, reason, &(diagram.words)(), left, top, room)),
     };
     let height = bottom + 2;
-    items.push(Item::text(0, number_row, Role::RungNumber, diagram.number));
+    let Drawing { mut items, instructions, shorts, .. } = drawing;
+    items.push(Item::text(0, number_row, Role::RungNumber, diagram.number.as_str()));
     for x in [left, right] {
-        items.push(Item { x, y: 0, shape: Shape::Rail });
+        items.push(Item::new(x, 0, Shape::Rail));
     }
     if diagram.edited {
         // On paper every row of an edited rung is marked.
         items.extend((0..height - 1).map(|row| Item::text(left - 1, row, Role::EditMark, "e")));
     }
-    Scene { width: columns, height, items }
+    Scene { width: columns, height, items, instructions, shorts, number: diagram.number }
 }
 
 /// The rung in words between the rails; returns its last row.

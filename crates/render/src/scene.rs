@@ -11,9 +11,44 @@ pub struct Scene {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// What is drawn. Text stands before lines where both want a cell.
+    /// What is drawn. Text stands before lines where both want a cell. All items of an instruction follow
+    /// each other.
     pub items: Vec<Item>,
+    /// The instructions drawn, in the order of their items; none where the rung stands in words.
+    pub instructions: Vec<Spot>,
+    /// Wires without an instruction on them (an empty leg), as the nodes they lead from and to.
+    pub shorts: Vec<(Node, Node)>,
+    /// Number of the rung as it stands at the left rail.
+    pub number: String,
 }
+
+impl Scene {
+    /// Which wires have power, by their node: the left rail, and what `out` says about the instructions.
+    pub fn powered(&self, out: &dyn Fn(usize) -> bool) -> Vec<bool> {
+        let ends = self.instructions.iter().map(|spot| spot.leaves).chain(self.shorts.iter().map(|short| short.1));
+        let mut power = vec![false; ends.max().unwrap_or(0).saturating_add(1)];
+        let mut give = |node: Node, on: bool| {
+            if let Some(power) = power.get_mut(node) {
+                *power |= on;
+            }
+        };
+        give(0, true);
+        for spot in &self.instructions {
+            give(spot.leaves, out(spot.index));
+        }
+        // In the order of power flow, so that one pass is enough.
+        for (from, to) in &self.shorts {
+            let on = power.get(*from).copied().unwrap_or(false);
+            if let Some(power) = power.get_mut(*to) {
+                *power |= on;
+            }
+        }
+        power
+    }
+}
+
+/// A piece of wire that has the same power everywhere. 0 is the left rail.
+pub type Node = usize;
 
 /// One thing drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +59,46 @@ pub struct Item {
     pub y: usize,
     /// What it is.
     pub shape: Shape,
+    /// Whose it is.
+    pub of: Of,
+}
+
+/// Whose an item is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Of {
+    /// The rung's: number, comment, rails.
+    #[default]
+    Rung,
+    /// A wire of this node.
+    Node(Node),
+    /// An instruction's.
+    Instruction {
+        /// Its number in the order of [`ladder::Rung::instructions`], or of a Do-more rung's instructions.
+        index: usize,
+        /// The operand a text shows, counted from 0.
+        operand: Option<usize>,
+        /// The address a text stands for, in the spelling of the model (`T4:0/DN`); a Do-more operand as
+        /// written. Texts cut into lines have the whole address at each.
+        link: Option<String>,
+    },
+}
+
+/// An instruction of a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Spot {
+    /// Its number, see [`Of::Instruction`].
+    pub index: usize,
+    /// Mnemonic, operands, symbol and description as one line.
+    pub title: String,
+    /// The wire it takes its power from.
+    pub enters: Node,
+    /// The wire it gives its power to.
+    pub leaves: Node,
+    /// Its bit has a force in the project: forced on, or off.
+    pub forced: Option<bool>,
+    /// What RSLogix highlights, if the style asks for it: a contact or coil whose bit in the data table is
+    /// such that it conducts, or drives. `None`: not asked for, or not known.
+    pub state: Option<bool>,
 }
 
 /// What an [`Item`] draws, starting at its place.
@@ -107,19 +182,49 @@ pub enum Role {
     Value,
     /// A remark of the renderer: nothing RSLogix prints.
     Note,
+    /// A force of the project at its contact or coil.
+    Force,
+    /// `T` at a contact or coil that [`Spot::state`] tells conducts or drives.
+    State,
 }
 
 impl Item {
+    pub(crate) fn new(x: usize, y: usize, shape: Shape) -> Item {
+        Item { x, y, shape, of: Of::Rung }
+    }
+
     pub(crate) fn text(x: usize, y: usize, role: Role, text: impl Into<String>) -> Item {
-        Item { x, y, shape: Shape::Text(role, text.into()) }
+        Item::new(x, y, Shape::Text(role, text.into()))
     }
 
     pub(crate) fn across(from: usize, to: usize, y: usize) -> Item {
-        Item { x: from, y, shape: Shape::Across { length: to.saturating_sub(from), arrows: None } }
+        Item::new(from, y, Shape::Across { length: to.saturating_sub(from), arrows: None })
     }
 
     pub(crate) fn down(x: usize, from: usize, to: usize) -> Item {
-        Item { x, y: from, shape: Shape::Down { length: to.saturating_sub(from), arrows: false } }
+        Item::new(x, from, Shape::Down { length: to.saturating_sub(from), arrows: false })
+    }
+
+    /// As a wire of a node.
+    pub(crate) fn on(mut self, node: Node) -> Item {
+        self.of = Of::Node(node);
+        self
+    }
+
+    /// The number of the instruction it belongs to.
+    pub fn instruction(&self) -> Option<usize> {
+        match self.of {
+            Of::Instruction { index, .. } => Some(index),
+            _ => None,
+        }
+    }
+
+    /// The address its text stands for.
+    pub fn link(&self) -> Option<&str> {
+        match &self.of {
+            Of::Instruction { link, .. } => link.as_deref(),
+            _ => None,
+        }
     }
 
     pub(crate) fn moved(mut self, x: usize, y: usize) -> Item {
