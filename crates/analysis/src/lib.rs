@@ -10,6 +10,7 @@
 //! * [`CallGraph`]: which program file runs because of which rung or interrupt.
 //! * [`Coverage`]: how much of the program is documented.
 //! * [`diff`]: what differs between two programs.
+//! * [`history`]: saves of one machine in order, and what changed from each to the next.
 //! * [`checks`]: what an experienced engineer would question, with codes.
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
 //! * [`search`]: addresses, instructions with wildcards, texts, regular expressions.
@@ -23,6 +24,7 @@ pub mod checks;
 mod coverage;
 pub mod csv;
 pub mod diff;
+pub mod history;
 mod location;
 pub mod proof;
 pub mod search;

@@ -113,6 +113,13 @@ pub enum Command {
                             Exit code 0: equal in what --only names; 1: a difference; 2: bad use; 3: unreadable."
     )]
     Diff(DiffArguments),
+    /// The saves of a machine in order, and what changed from each to the next; as a git repository too
+    #[command(after_help = "Example: rungs history archive/\n         rungs history archive/ --full | less\n         \
+                            rungs history archive/ --to-git archive.git\n\n\
+                            Saves are put together by name, processor, program ID, creation and content, and in order by the save time \
+                            in the file; what each place rests on is told. Exit code 0: done; 2: bad use; 3: a file is unreadable. See \
+                            docs/history.md.")]
+    History(HistoryArguments),
 }
 
 /// Which copy of the program a project holds to work on.
@@ -517,6 +524,28 @@ pub struct DiffArguments {
     #[arg(long)]
     pub strict: bool,
     /// JSON, one document per line and pair of files
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct HistoryArguments {
+    /// Saves, or folders of saves
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Only machines whose name or one of whose files contains this text
+    #[arg(long, value_name = "TEXT")]
+    pub machine: Option<String>,
+    /// Every change; default: the first few of each section
+    #[arg(long)]
+    pub full: bool,
+    /// Write the history as a new git repository into this folder, which must not exist or be empty
+    #[arg(long, value_name = "DIR")]
+    pub to_git: Option<PathBuf>,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// JSON, one document per line and machine
     #[arg(long)]
     pub json: bool,
 }

@@ -7,6 +7,7 @@ mod data;
 mod diff;
 mod domore;
 mod export;
+mod history;
 mod info;
 mod junit;
 mod migrate;
@@ -52,6 +53,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Migrate(arguments) => migrate::run(&arguments),
         Command::Prove(arguments) => prove::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
+        Command::History(arguments) => history::run(&arguments),
     }
 }
 

@@ -2,8 +2,8 @@
 
 mod do_more;
 mod folders;
-mod json;
-mod text;
+pub(super) mod json;
+pub(super) mod text;
 mod text_side;
 mod unified;
 

@@ -276,6 +276,11 @@ fn headline_of(found: &RungChange, programs: (&Side<'_>, &Side<'_>)) -> String {
     })
 }
 
+/// The same for a program of RSLogix 500, by its numbers.
+pub fn headline(found: &RungChange) -> String {
+    headline_with(found, &|_, at| (format!("file {}", at.file), format!("rung {}", at.rung)))
+}
+
 /// As `words` calls a place of the old or of the new program: its file and its rung.
 fn headline_with(found: &RungChange, words: &dyn Fn(bool, Place) -> (String, String)) -> String {
     let name = |is_new: bool, at: Place| {
@@ -308,7 +313,7 @@ fn headline_with(found: &RungChange, words: &dyn Fn(bool, Place) -> (String, Str
 }
 
 /// What changed inside a rung, for a person.
-fn sentence(edit: &Edit) -> String {
+pub fn sentence(edit: &Edit) -> String {
     let Edit { mnemonic, old, new, .. } = edit;
     let filled = |text: &str| if text.is_empty() { "nothing".to_owned() } else { text.to_owned() };
     match edit.kind {
