@@ -9,6 +9,7 @@ mod args;
 mod commands;
 mod do_more;
 mod files;
+mod listing;
 mod output;
 mod scenario_loader;
 

@@ -7,6 +7,7 @@ mod data;
 mod diff;
 mod domore;
 mod export;
+mod git;
 mod history;
 mod info;
 mod junit;

@@ -1,11 +1,12 @@
 //! `rungs history`: the saves of each machine in order, and what changed from one to the next.
 
+mod repository;
 mod words;
 
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
-use analysis::history::{Entry, Machine, Save, Step, machines, steps};
+use analysis::history::{Entry, Machine, Order, Save, Step, machines, steps};
 use jiff::Timestamp;
 use ladder::{Project, Severity};
 use serde_json::{Value, json};
@@ -13,7 +14,9 @@ use serde_json::{Value, json};
 use super::{diagnostics_json, diff, file_name, mode, open};
 use crate::args::HistoryArguments;
 use crate::files;
+use crate::listing;
 use crate::output::{Error, Outcome, Printable, printable};
+use repository::Commit;
 
 /// Changes of one section that are listed without `--full`.
 const SHOWN: usize = 6;
@@ -40,7 +43,11 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
     if chosen.is_empty() && outcome == Outcome::Done {
         return Err(Error::Use("no machine of this name among the saves".to_owned()));
     }
+    if let Some(target) = &arguments.to_git {
+        repository::check_target(target).map_err(Error::Use)?;
+    }
     let writer = Writer { arguments, archive: &archive, machines: &found };
+    let (mut commits, mut names) = (Vec::new(), repository::Names::default());
     if !arguments.json {
         writer.overview(&chosen, &mut out)?;
     }
@@ -48,9 +55,12 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
         let projects = projects(&archive, machine, arguments)?;
         let refs: Vec<&Project> = projects.iter().collect();
         let steps = steps(&refs);
+        if arguments.to_git.is_some() {
+            commits.push(writer.commits(machine, &names.take(&machine.name), &refs, &steps));
+        }
         if arguments.json {
             writeln!(out, "{}", writer.json(machine, &refs, &steps))?;
-        } else {
+        } else if arguments.to_git.is_none() {
             writer.text(machine, &refs, &steps, &mut out)?;
         }
         let broken = |project: &Project| project.diagnostics.iter().any(|d| d.severity == Severity::Error);
@@ -58,8 +68,30 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
             outcome = outcome.max(Outcome::Unreadable);
         }
     }
+    if let Some(target) = &arguments.to_git {
+        let (machines, commits) = (commits.len(), in_time(commits));
+        repository::write(target, &commits).map_err(Error::Use)?;
+        if !arguments.json {
+            let line = format!("{}: {} commits, {machines} folders", target.display(), commits.len());
+            writeln!(Printable(&mut out), "{line}")?;
+        }
+    }
     out.flush()?;
     Ok(outcome)
+}
+
+/// Commits of all machines one after the other by their times; those of a machine keep their order.
+fn in_time(machines: Vec<Vec<Commit>>) -> Vec<Commit> {
+    let mut keyed: Vec<(i64, usize, usize, Commit)> = Vec::new();
+    for (machine, commits) in machines.into_iter().enumerate() {
+        let mut time = i64::MIN;
+        for (number, commit) in commits.into_iter().enumerate() {
+            time = commit.time.unwrap_or(time).max(time);
+            keyed.push((time, machine, number, commit));
+        }
+    }
+    keyed.sort_by_key(|(time, machine, number, _)| (*time, *machine, *number));
+    keyed.into_iter().map(|(.., commit)| commit).collect()
 }
 
 /// What is known of each save. Programs are not kept: an archive can be larger than memory.
@@ -241,6 +273,37 @@ impl Writer<'_> {
         Ok(())
     }
 
+    /// The saves as commits, in their order.
+    fn commits(&self, machine: &Machine, folder: &str, projects: &[&Project], steps: &[Step]) -> Vec<Commit> {
+        let all = machine.saves.iter().zip(projects).enumerate();
+        let commits = all.map(|(number, (entry, project))| {
+            let step = number.checked_sub(1).and_then(|step| steps.get(step));
+            let (subject, mut body) = told(step);
+            let source = &project.source;
+            body.push_str(&format!("\nFile: {}\n", self.shown(machine, entry.save)));
+            entry.copies.iter().for_each(|copy| {
+                body.push_str(&format!("Same bytes: {}\n", self.shown(machine, *copy)));
+            });
+            body.push_str(&format!("SHA-256: {}\nPlace in the history by: {}\n", source.sha256, entry.order.as_str()));
+            match (&entry.when, entry.order) {
+                (Some(when), Order::SaveTime) => body.push_str(&format!("Saved: {when}\n")),
+                (Some(when), _) => body.push_str(&format!("Date, not of the save: {when}\n")),
+                (None, _) => body.push_str("Date: not known, that of the commit before\n"),
+            }
+            body.push_str("Author: the project names no person; the program that saved it stands there\n");
+            let application = if source.application.is_empty() { "RSLogix 500" } else { &source.application };
+            Commit {
+                folder: folder.to_owned(),
+                subject: format!("{subject} ({})", machine.name),
+                body,
+                time: entry.when.as_deref().and_then(repository::seconds),
+                author: format!("{application} {}", source.saved_by),
+                texts: listing::texts(project),
+            }
+        });
+        commits.collect()
+    }
+
     fn json(&self, machine: &Machine, projects: &[&Project], steps: &[Step]) -> Value {
         let name = |place: usize| self.machines.get(place).map(|machine| machine.name.clone());
         let saves = machine.saves.iter().enumerate().map(|(number, entry)| {
@@ -284,6 +347,36 @@ impl Writer<'_> {
             "saves": saves,
         })
     }
+}
+
+/// Lines of one section in a commit message: the changed files have the rest.
+const TOLD: usize = 40;
+
+/// What a step did: one line, and all of it.
+fn told(step: Option<&Step>) -> (String, String) {
+    let Some(step) = step else { return ("first save".to_owned(), String::new()) };
+    let sections = words::sections(&step.change);
+    let mut body = String::new();
+    for section in &sections {
+        body.push_str(&format!("{}: {}\n", section.title, section.sum));
+        section.lines.iter().take(TOLD).for_each(|line| body.push_str(&format!("  {line}\n")));
+        if section.lines.len() > TOLD {
+            body.push_str(&format!("  and {} more\n", section.lines.len() - TOLD));
+        }
+    }
+    let subject = match sections.first() {
+        None => "nothing changed".to_owned(),
+        // Logic needs no word before it.
+        Some(section) if section.title == "Logic" => section.sum.clone(),
+        Some(section) => {
+            let titles: Vec<&str> = sections.iter().map(|section| section.title).collect();
+            match titles.as_slice() {
+                [only] => format!("{}: {}", only.to_lowercase(), section.sum),
+                _ => format!("{}; logic equal", titles.join(", ").to_lowercase()),
+            }
+        }
+    };
+    (subject, body)
 }
 
 fn plural(number: usize, one: &str) -> String {
