@@ -120,6 +120,15 @@ pub enum Command {
                             in the file; what each place rests on is told. Exit code 0: done; 2: bad use; 3: a file is unreadable. See \
                             docs/history.md.")]
     History(HistoryArguments),
+    /// Lets git show rungs in diff, log and show, and merge projects
+    #[command(
+        after_help = "Example: rungs git-setup --merge\n         rungs git-setup --global\n         rungs git-setup --remove\n\n\
+                            Run inside a repository, or with --global for all of yours. It can be run again at any time. See docs/history.md."
+    )]
+    GitSetup(GitSetupArguments),
+    /// The text of a project that git compares
+    #[command(hide = true, after_help = "Example: rungs textconv conveyor.RSS")]
+    Textconv(TextconvArguments),
 }
 
 /// Which copy of the program a project holds to work on.
@@ -548,6 +557,29 @@ pub struct HistoryArguments {
     /// JSON, one document per line and machine
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Args)]
+pub struct GitSetupArguments {
+    /// For all repositories of this user, not for this one alone
+    #[arg(long)]
+    pub global: bool,
+    /// The merge driver too: rungs, documentation and data tables are merged, conflicts marked in SLC text
+    #[arg(long)]
+    pub merge: bool,
+    /// Take everything out again
+    #[arg(long, conflicts_with = "merge")]
+    pub remove: bool,
+    /// Where git finds rungs; default: this program
+    #[arg(long, value_name = "PATH")]
+    pub program: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct TextconvArguments {
+    /// A project
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
 }
 
 /// A part of a comparison.

@@ -6,7 +6,9 @@ use std::fmt::Write;
 use analysis::diff::{Side, compare};
 use convert::slc::rung::instruction_text;
 use instr::Stored;
-use ladder::{AddressEntry, DataFile, Documentation, Element, FileType, Image, Instruction, Operand, Project, Radix, Rung};
+use ladder::{
+    AddressEntry, DataFile, Documentation, Element, FileType, Image, Instruction, Operand, Project, Radix, Rung,
+};
 
 /// Columns up to which a rung stays on one line.
 const ONE_LINE: usize = 100;
@@ -151,9 +153,11 @@ fn series(image: &Image, elements: &[Element], depth: usize, out: &mut Vec<(usiz
 
 /// The instruction without the presets and accumulators that the data table holds: `values/` has them.
 fn logic_text(image: &Image, instruction: &Instruction) -> String {
-    let form = instruction.mnemonic.name().and_then(instr::by_mnemonic).and_then(|entry| {
-        entry.forms.iter().find(|form| form.operands.len() == instruction.operands.len())
-    });
+    let form = instruction
+        .mnemonic
+        .name()
+        .and_then(instr::by_mnemonic)
+        .and_then(|entry| entry.forms.iter().find(|form| form.operands.len() == instruction.operands.len()));
     let stored = |index: usize| form.and_then(|form| form.operands.get(index)).map(|operand| operand.stored);
     let value = |index: usize| stored(index) == Some(Stored::Value);
     let values = (0..instruction.operands.len()).filter(|index| value(*index)).count();
@@ -172,7 +176,9 @@ fn logic_text(image: &Image, instruction: &Instruction) -> String {
 /// The last operands of an instruction that was not verified say what the data table says.
 fn in_table(image: &Image, instruction: &Instruction, values: usize) -> bool {
     let element = instruction.operands.iter().find_map(|operand| match operand {
-        Operand::Address(address) if matches!(address.file_type, FileType::T | FileType::C | FileType::R) => Some(address),
+        Operand::Address(address) if matches!(address.file_type, FileType::T | FileType::C | FileType::R) => {
+            Some(address)
+        }
         _ => None,
     });
     let words = element.and_then(|address| {

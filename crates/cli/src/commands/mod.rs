@@ -8,6 +8,7 @@ mod diff;
 mod domore;
 mod export;
 mod git;
+mod git_setup;
 mod history;
 mod info;
 mod junit;
@@ -55,6 +56,8 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Prove(arguments) => prove::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::History(arguments) => history::run(&arguments),
+        Command::GitSetup(arguments) => git_setup::run(&arguments),
+        Command::Textconv(arguments) => git_setup::textconv(&arguments),
     }
 }
 

@@ -102,7 +102,16 @@ pub fn write(folder: &Path, commits: &[Commit]) -> Result<(), String> {
     import.args(["fast-import", "--quiet", "--done", "--date-format=raw"]);
     git::run(import, Some(&stream(commits)))?;
     let mut checkout = git::git(folder);
-    checkout.args(["-c", "core.hooksPath=/dev/null", "-c", "core.autocrlf=false", "reset", "--quiet", "--hard", BRANCH]);
+    checkout.args([
+        "-c",
+        "core.hooksPath=/dev/null",
+        "-c",
+        "core.autocrlf=false",
+        "reset",
+        "--quiet",
+        "--hard",
+        BRANCH,
+    ]);
     git::run(checkout, None)?;
     Ok(())
 }
@@ -202,12 +211,16 @@ mod tests {
             assert_eq!(safe(&safe(name)), safe(name), "{name:?}");
         }
         let mut names = Names::default();
-        assert_eq!([names.take("A.txt"), names.take("a.TXT"), names.take("b/"), names.take("b?")].join(","), "A.txt,a (2).TXT,b_,b_ (2)");
+        assert_eq!(
+            [names.take("A.txt"), names.take("a.TXT"), names.take("b/"), names.take("b?")].join(","),
+            "A.txt,a (2).TXT,b_,b_ (2)"
+        );
     }
 
     #[test]
     fn a_message_cannot_end_the_stream() {
-        let text = Text { path: vec!["program".to_owned(), "002\nD x.slc".to_owned()], text: "data 5\ndone\n".to_owned() };
+        let text =
+            Text { path: vec!["program".to_owned(), "002\nD x.slc".to_owned()], text: "data 5\ndone\n".to_owned() };
         let commit = Commit {
             folder: "m".to_owned(),
             subject: "x\ndone\n\u{1B}]0;title\u{7}".to_owned(),
