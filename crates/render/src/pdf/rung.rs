@@ -139,7 +139,7 @@ impl Painter<'_> {
     }
 
     fn wires(&mut self, item: &Item) {
-        let Item { x, y, ref shape } = *item;
+        let Item { x, y, ref shape, .. } = *item;
         let middle = y as f32 + 0.5;
         match shape {
             Shape::Across { length, .. } => self.across(x as f32 + 0.5, (x + length) as f32 + 0.5, y),
@@ -160,7 +160,7 @@ impl Painter<'_> {
 
     /// Contacts, coils, brackets and the arrow heads of wires.
     fn sign(&mut self, item: &Item) {
-        let Item { x, y, ref shape } = *item;
+        let Item { x, y, ref shape, .. } = *item;
         match shape {
             Shape::Across { length, arrows: Some(direction) } if self.rows.contains(&y) => {
                 let tip = if *direction == Direction::Right { 0.5 } else { -0.5 };
@@ -230,7 +230,7 @@ impl Painter<'_> {
     }
 
     fn text(&mut self, item: &Item, place: &mut dyn FnMut(&str) -> Option<String>) {
-        let Item { x, y, ref shape } = *item;
+        let Item { x, y, ref shape, .. } = *item;
         if !self.rows.contains(&y) {
             return;
         }
@@ -267,7 +267,7 @@ impl Painter<'_> {
             Role::Title => (Font::MonoBold, Color::BLACK),
             Role::BoxTitle | Role::Name => (Font::Mono, WIRE),
             Role::Note => (Font::Mono, REMARK),
-            Role::Symbol | Role::Address => (Font::MonoBold, Color::BLACK),
+            Role::Symbol | Role::Address | Role::Force | Role::State => (Font::MonoBold, Color::BLACK),
             Role::Comment | Role::Description | Role::Module | Role::Operand | Role::Value => {
                 (Font::Mono, Color::BLACK)
             }
