@@ -5,6 +5,7 @@
 //! the tests.
 
 pub mod book;
+pub mod browser;
 pub mod corpus;
 pub mod drawing;
 pub mod printout;

@@ -106,6 +106,9 @@ pub enum Command {
                             in part; 2: bad use; 3: a program or map that cannot be read. See docs/proof.md for what a verdict means."
     )]
     Prove(ProveArguments),
+    /// The whole project as a document: one HTML page with search, links and every section of the vendor's report
+    #[command(after_help = sections_help())]
+    Report(ReportArguments),
     /// What changed between two programs, rung by rung; documentation, values and configuration apart
     #[command(
         after_help = "Example: rungs diff conveyor_old.RSS conveyor.RSS\n         rungs diff conveyor.RSS --online\n         \
@@ -315,6 +318,46 @@ pub struct VerifyArguments {
     /// JSON, one document per line and file
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Args)]
+pub struct ReportArguments {
+    /// Projects or folders of projects
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Page to write (.html); with several projects or a folder: the folder that gets a page each and index.html
+    #[arg(short, long, value_name = "PATH")]
+    pub out: PathBuf,
+    /// Only these sections, separated by commas; names below
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub sections: Vec<String>,
+    /// All sections but these
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub without: Vec<String>,
+    /// A date to show; none is taken from the clock, so that equal projects give equal reports
+    #[arg(long, value_name = "TEXT")]
+    pub date: Option<String>,
+    /// Overwrite files that exist
+    #[arg(long)]
+    pub force: bool,
+    /// Strict reading: the first deviation from the format is an error
+    #[arg(long)]
+    pub strict: bool,
+    /// Which copy of the program
+    #[arg(long, value_enum, default_value_t)]
+    pub image: ImageChoice,
+}
+
+/// The sections of a report by name, with an example.
+fn sections_help() -> String {
+    let mut text = String::from(
+        "Example: rungs report conveyor.RSS --out conveyor.html\n         rungs report plant/ --out reports\n         \
+         rungs report conveyor.RSS --out io.html --sections io,io-map,timers\n\nSections, in their order:\n",
+    );
+    for kind in report::Kind::all() {
+        text.push_str(&format!("  {:<22}{}\n", kind.name(), kind.help()));
+    }
+    text
 }
 
 #[derive(Args)]

@@ -17,6 +17,7 @@ pub mod counter;
 pub mod diagnostic;
 pub mod documentation;
 pub mod engine;
+pub mod figures;
 pub mod instruction;
 pub mod math;
 pub mod memory;

@@ -174,6 +174,16 @@ pub struct MemoryBlock {
     pub origin: Origin,
 }
 
+impl MemoryBlock {
+    /// The count in the radix of the block's numbers, octal with a leading 0.
+    pub fn count_text(&self) -> String {
+        match self.radix {
+            Some(Radix::Octal) => format!("0{:o}", self.count),
+            _ => self.count.to_string(),
+        }
+    }
+}
+
 /// How elements of a memory block are numbered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Radix {
@@ -182,6 +192,16 @@ pub enum Radix {
     Decimal,
     /// `octal`: the guest memory of DirectLOGIC (`DLX`, `DLV`, ...).
     Octal,
+}
+
+impl Radix {
+    /// The word in lists.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Radix::Decimal => "decimal",
+            Radix::Octal => "octal",
+        }
+    }
 }
 
 /// A line of `ELEMENT_DOC`: documentation of an element.

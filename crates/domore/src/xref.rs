@@ -122,6 +122,50 @@ pub struct Unresolved {
     pub why: String,
 }
 
+/// An element with only one side of its use in the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OneSided {
+    /// Nothing writes it.
+    ReadNeverWritten,
+    /// Nothing reads it.
+    WrittenNeverRead,
+}
+
+impl OneSided {
+    /// What deserves a look: a control relay or register with only one side of its use in the program.
+    /// Inputs, outputs, communication and system memory have their other side elsewhere.
+    pub fn of(element: &str, accesses: &[&Access]) -> Option<OneSided> {
+        const OWN: [&str; 8] = ["C", "V", "N", "D", "R", "SS", "SL", "DLC"];
+        let block = element.trim_end_matches(|c: char| c.is_ascii_digit());
+        if block.len() == element.len() || !OWN.iter().any(|own| own.eq_ignore_ascii_case(block)) {
+            return None;
+        }
+        // An instruction that is not known may do anything.
+        let role = |test: fn(Role) -> bool| accesses.iter().any(|access| access.role.is_none_or(test));
+        match (role(|role| !matches!(role, Role::Write | Role::Reset)), role(Role::writes)) {
+            (true, false) => Some(OneSided::ReadNeverWritten),
+            (false, true) => Some(OneSided::WrittenNeverRead),
+            _ => None,
+        }
+    }
+
+    /// The finding in words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            OneSided::ReadNeverWritten => "read, never written",
+            OneSided::WrittenNeverRead => "written, never read",
+        }
+    }
+}
+
+impl Access {
+    /// What happens in words: `read`, `may write`, `unknown`.
+    pub fn does(&self) -> String {
+        let role = self.role.map_or("unknown", Role::as_str);
+        if self.may { format!("may {role}") } else { role.to_owned() }
+    }
+}
+
 /// Comparisons of wide accesses with elements that listing everything may take.
 const BUDGET: usize = 50_000_000;
 

@@ -16,6 +16,8 @@
 
 pub mod anchor;
 pub mod diff;
+mod domore;
+pub mod html;
 pub mod model;
 mod options;
 pub mod pdf;
@@ -23,6 +25,7 @@ mod rslogix;
 pub mod words;
 
 pub use anchor::Anchor;
+pub use domore::{DomoreSource, domore_project};
 pub use model::{
     Block, Column, ColumnKind, Document, Note, NoteKind, Pair, Row, RowKind, Run, Rung, Section, Table, Text, TreeItem,
 };

@@ -177,8 +177,17 @@ pub struct Rung<'a> {
 
 #[derive(Clone, Debug)]
 enum Drawing<'a> {
-    Rslogix { image: &'a Image, file: &'a ProgramFile, index: usize, documentation: &'a Documentation },
-    Domore { block: &'a domore::CodeBlock, index: usize, documentation: Rc<domore::documentation::Documentation<'a>> },
+    Rslogix {
+        image: &'a Image,
+        file: &'a ProgramFile,
+        index: usize,
+        documentation: &'a Documentation,
+    },
+    Domore {
+        block: &'a ::domore::CodeBlock,
+        index: usize,
+        documentation: Rc<::domore::documentation::Documentation<'a>>,
+    },
 }
 
 impl<'a> Rung<'a> {
@@ -196,9 +205,9 @@ impl<'a> Rung<'a> {
     /// A rung of a code block, which is the `number`th of its project; `index` from 0.
     pub fn of_code_block(
         number: usize,
-        block: &'a domore::CodeBlock,
+        block: &'a ::domore::CodeBlock,
         index: usize,
-        documentation: Rc<domore::documentation::Documentation<'a>>,
+        documentation: Rc<::domore::documentation::Documentation<'a>>,
     ) -> Self {
         Rung {
             anchor: Anchor::rung(number, index + 1),

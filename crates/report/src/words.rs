@@ -96,3 +96,17 @@ pub fn one_line(lines: &[String]) -> String {
 pub(crate) fn count(number: usize, one: &str) -> String {
     if number == 1 { format!("1 {one}") } else { format!("{number} {one}s") }
 }
+
+/// `40 %`; empty of nothing.
+pub(crate) fn percent(part: usize, of: usize) -> String {
+    match (part * 100).checked_div(of) {
+        Some(percent) => format!("{percent} %"),
+        None => String::new(),
+    }
+}
+
+/// `4 of 10  (40 %)`.
+pub(crate) fn share(part: usize, of: usize) -> String {
+    let percent = percent(part, of);
+    if percent.is_empty() { "none there".to_owned() } else { format!("{part} of {of}  ({percent})") }
+}

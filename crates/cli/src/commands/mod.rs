@@ -14,6 +14,7 @@ mod info;
 mod junit;
 mod migrate;
 mod prove;
+mod report;
 mod run;
 mod search;
 mod show;
@@ -26,9 +27,9 @@ mod xref;
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
+use ::report::words::one_line;
 use convert::AnyProject;
 use ladder::{Documentation, Image, Project, Severity};
-use report::words::one_line;
 use rss::Mode;
 
 use crate::args::{Arguments, Command, ImageChoice, Input};
@@ -58,6 +59,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::History(arguments) => history::run(&arguments),
         Command::GitSetup(arguments) => git_setup::run(&arguments),
         Command::Textconv(arguments) => git_setup::textconv(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
     }
 }
 

@@ -70,13 +70,13 @@ pub(super) fn coverage<'a>(context: &Context<'a, '_>) -> Vec<Block<'a>> {
     let (image, documentation) = (context.image(), context.documentation());
     let figures = Coverage::build(image, documentation, &context.xref);
     let mut pairs = Pairs::new();
-    pairs.add("Addresses with a symbol or description", share(figures.documented, figures.addresses));
-    pairs.add("Addresses with a symbol", share(figures.with_symbol, figures.addresses));
-    pairs.add("Addresses with a description", share(figures.with_description, figures.addresses));
-    pairs.add("Rungs with a comment", share(figures.with_comment, figures.rungs));
-    pairs.add("Rungs with a page title", share(figures.with_title, figures.rungs));
-    pairs.add("Ladder files with a name", share(figures.files_with_name, figures.files));
-    pairs.add("Ladder files with a description", share(figures.files_with_description, figures.files));
+    pairs.add("Addresses with a symbol or description", words::share(figures.documented, figures.addresses));
+    pairs.add("Addresses with a symbol", words::share(figures.with_symbol, figures.addresses));
+    pairs.add("Addresses with a description", words::share(figures.with_description, figures.addresses));
+    pairs.add("Rungs with a comment", words::share(figures.with_comment, figures.rungs));
+    pairs.add("Rungs with a page title", words::share(figures.with_title, figures.rungs));
+    pairs.add("Ladder files with a name", words::share(figures.files_with_name, figures.files));
+    pairs.add("Ladder files with a description", words::share(figures.files_with_description, figures.files));
     let mut table = Table::new(&[
         ("File", ColumnKind::Text),
         ("Rungs", ColumnKind::Number),
@@ -88,7 +88,7 @@ pub(super) fn coverage<'a>(context: &Context<'a, '_>) -> Vec<Block<'a>> {
         let commented = |rung: &&ladder::Rung| rung.comment.as_ref().is_some_and(|c| !c.text.trim().is_empty());
         let (all, with) = (rungs.clone().count(), rungs.filter(commented).count());
         let name = format!("{} {}", file.number, file.name).trim_end().to_owned();
-        let share = percent(with, all);
+        let share = words::percent(with, all);
         table.row([
             Text::link(name, Anchor::file(file.number)),
             all.to_string().into(),
@@ -97,16 +97,4 @@ pub(super) fn coverage<'a>(context: &Context<'a, '_>) -> Vec<Block<'a>> {
         ]);
     }
     vec![pairs.block(), Block::Table(table)]
-}
-
-fn percent(part: usize, of: usize) -> String {
-    match (part * 100).checked_div(of) {
-        Some(percent) => format!("{percent} %"),
-        None => String::new(),
-    }
-}
-
-fn share(part: usize, of: usize) -> String {
-    let percent = percent(part, of);
-    if percent.is_empty() { "none there".to_owned() } else { format!("{part} of {of}  ({percent})") }
 }

@@ -11,8 +11,10 @@ mod symbols;
 mod timers;
 mod xref;
 
+pub(crate) use overview::{Pairs, diagnostics};
+
 use analysis::{CallGraph, CrossReference, Location};
-use ladder::{Address, Documentation, Image, Project, Severity};
+use ladder::{Address, Diagnostic, Documentation, Image, Project, Severity};
 
 use crate::anchor::Anchor;
 use crate::model::{Block, Document, Note, NoteKind, Section, Text};
@@ -75,7 +77,7 @@ pub fn project<'a>(source: &Source<'a>, options: &Options) -> Document<'a> {
         title: format!("{}{which}", source.project.source.file),
         tool: concat!("rungs ", env!("CARGO_PKG_VERSION")).to_owned(),
         date: options.date.clone().unwrap_or_default(),
-        notes: notes(source.project),
+        notes: notes(&source.project.diagnostics),
         ..Document::default()
     };
     for kind in Kind::all().filter(|kind| options.sections.has(*kind)) {
@@ -125,8 +127,8 @@ fn blocks<'a>(kind: Kind, context: &Context<'a, '_>) -> Vec<Block<'a>> {
 }
 
 /// Partial data must say so, whatever sections were chosen.
-fn notes(project: &Project) -> Vec<Note> {
-    let count = |severity| project.diagnostics.iter().filter(|found| found.severity == severity).count();
+pub(crate) fn notes(found: &[Diagnostic]) -> Vec<Note> {
+    let count = |severity| found.iter().filter(|found| found.severity == severity).count();
     let mut notes = Vec::new();
     let link = |text: String| Text::link(text, Anchor::named(Kind::Diagnostics.name()));
     match count(Severity::Error) {

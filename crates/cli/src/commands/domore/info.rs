@@ -1,71 +1,16 @@
 //! `rungs info` of a Do-more project.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 
-use domore::instruction::by_mnemonic;
-use domore::program::{MemoryBlock, Part, Radix};
-use domore::{CodeBlock, Project};
+use domore::figures::Figures;
+use domore::program::{MemoryBlock, Radix};
 use serde_json::{Value, json};
 
 use super::OpenedDomore;
 use crate::output::{Columns, Error};
 
-/// What is counted in the instructions of a project.
-struct Figures {
-    instructions: usize,
-    rungs: usize,
-    commented: usize,
-    /// Instructions that are not in the table, with how often each occurs.
-    unknown: BTreeMap<String, usize>,
-    documented: usize,
-    nicknames: usize,
-}
-
-impl Figures {
-    fn of(project: &Project) -> Figures {
-        let rungs = || project.code_blocks().flat_map(|block| &block.rungs);
-        let mut unknown = BTreeMap::new();
-        let mut instructions = 0;
-        for instruction in rungs().flat_map(|rung| &rung.instructions) {
-            instructions += 1;
-            if by_mnemonic(&instruction.mnemonic).is_none() {
-                *unknown.entry(instruction.mnemonic.clone()).or_insert(0) += 1;
-            }
-        }
-        Figures {
-            instructions,
-            rungs: rungs().filter(|rung| !rung.instructions.is_empty()).count(),
-            commented: rungs().filter(|rung| rung.comment.is_some()).count(),
-            unknown,
-            documented: project.documentation().count(),
-            nicknames: project.documentation().filter(|entry| !entry.nickname.is_empty()).count(),
-        }
-    }
-}
-
 fn radix(block: &MemoryBlock) -> &'static str {
-    match block.radix {
-        Some(Radix::Decimal) => "decimal",
-        Some(Radix::Octal) => "octal",
-        None => "",
-    }
-}
-
-fn stages(block: &CodeBlock) -> usize {
-    block.rungs.iter().filter(|rung| rung.stage().is_some()).count()
-}
-
-fn instructions(block: &CodeBlock) -> usize {
-    block.rungs.iter().map(|rung| rung.instructions.len()).sum()
-}
-
-/// Sections that are carried untouched: name and number of lines.
-fn sections(project: &Project) -> impl Iterator<Item = (&str, usize)> {
-    project.parts.iter().filter_map(|part| match part {
-        Part::Raw(section) => Some((section.name.as_str(), section.lines.len())),
-        _ => None,
-    })
+    block.radix.map_or("", Radix::as_str)
 }
 
 pub fn info(opened: &OpenedDomore, json: bool, out: &mut dyn Write) -> Result<(), Error> {
@@ -88,9 +33,9 @@ fn describe(opened: &OpenedDomore) -> Value {
         })).collect::<Value>(),
         "code_blocks": project.code_blocks().map(|block| json!({
             "kind": block.kind.title(), "name": block.name, "rungs": block.rungs.len(),
-            "instructions": instructions(block), "stages": stages(block),
+            "instructions": block.instructions(), "stages": block.stages(),
         })).collect::<Value>(),
-        "sections": sections(project).map(|(name, lines)| json!({"name": name, "lines": lines})).collect::<Value>(),
+        "sections": project.carried().map(|(name, lines)| json!({"name": name, "lines": lines})).collect::<Value>(),
         "instructions": figures.instructions,
         "unknown_instructions": figures.unknown,
         "documentation": {
@@ -117,19 +62,15 @@ fn print(opened: &OpenedDomore, out: &mut dyn Write) -> Result<(), Error> {
             block.name.clone(),
             block.kind.title().to_owned(),
             block.rungs.len().to_string(),
-            instructions(block).to_string(),
-            stages(block).to_string(),
+            block.instructions().to_string(),
+            block.stages().to_string(),
         ]);
     }
     section(out, "Code blocks", &blocks)?;
     let mut memory = Columns::new(&["Name", "Type", "Count", "Numbers", "Further columns"]);
     for block in project.memory() {
-        let count = match block.radix {
-            Some(Radix::Octal) => format!("0{:o}", block.count),
-            _ => block.count.to_string(),
-        };
         let extra = block.extra.join(" ");
-        memory.row([block.name.clone(), block.type_word.clone(), count, radix(block).to_owned(), extra]);
+        memory.row([block.name.clone(), block.type_word.clone(), block.count_text(), radix(block).to_owned(), extra]);
     }
     section(out, "Memory", &memory)?;
     let mut devices = Columns::new(&["Device", "Parameters"]);
@@ -142,7 +83,7 @@ fn print(opened: &OpenedDomore, out: &mut dyn Write) -> Result<(), Error> {
         "\n  Documentation: {} elements, {} with a nickname; {} of {} rungs have a comment",
         figures.documented, figures.nicknames, figures.commented, figures.rungs
     )?;
-    for (name, lines) in sections(project) {
+    for (name, lines) in project.carried() {
         writeln!(out, "  Section {name}: {lines} lines, carried untouched")?;
     }
     if !figures.unknown.is_empty() {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use domore::documentation::Documentation;
 use domore::instruction::Role;
-use domore::xref::{Access, Area, CrossReference};
+use domore::xref::{Access, Area, CrossReference, OneSided};
 use serde_json::{Value, json};
 
 use super::OpenedDomore;
@@ -104,21 +104,8 @@ pub fn xref(
     Ok(outcome)
 }
 
-/// What deserves a look: a control relay or register with only one side of its use in the program.
-/// Inputs, outputs, communication and system memory have their other side elsewhere.
 fn finding(group: &Group<'_>) -> Option<&'static str> {
-    const OWN: [&str; 8] = ["C", "V", "N", "D", "R", "SS", "SL", "DLC"];
-    let block = group.name.trim_end_matches(|c: char| c.is_ascii_digit());
-    if block.len() == group.name.len() || !OWN.iter().any(|own| own.eq_ignore_ascii_case(block)) {
-        return None;
-    }
-    // An instruction that is not known may do anything.
-    let role = |test: fn(Role) -> bool| group.accesses.iter().any(|access| access.role.is_none_or(test));
-    match (role(|role| !matches!(role, Role::Write | Role::Reset)), role(Role::writes)) {
-        (true, false) => Some("read, never written"),
-        (false, true) => Some("written, never read"),
-        _ => None,
-    }
+    OneSided::of(&group.name, &group.accesses).map(OneSided::as_str)
 }
 
 fn place(access: &Access) -> String {
@@ -127,11 +114,6 @@ fn place(access: &Access) -> String {
     } else {
         format!("{}:{}", access.code_block, access.rung)
     }
-}
-
-fn does(access: &Access) -> String {
-    let role = access.role.map_or("unknown", Role::as_str);
-    if access.may { format!("may {role}") } else { role.to_owned() }
 }
 
 fn print_group(group: &Group<'_>, documentation: &Documentation<'_>, out: &mut dyn Write) -> Result<(), Error> {
@@ -143,7 +125,7 @@ fn print_group(group: &Group<'_>, documentation: &Documentation<'_>, out: &mut d
     for access in &group.accesses {
         table.row([
             place(access),
-            does(access),
+            access.does(),
             access.mnemonic.clone(),
             access.written.clone(),
             access.through.as_str().to_owned(),

@@ -1,0 +1,179 @@
+//! Blocks as HTML. End tags that HTML lets stand without are left out: a report has tens of thousands.
+
+use std::io::{self, Write};
+
+use render::svg;
+
+use crate::model::{Block, Column, ColumnKind, Document, Note, NoteKind, Row, RowKind, Rung, Table, Text, TreeItem};
+
+use super::escape;
+
+/// Columns of a drawing.
+const WIDTH: usize = 110;
+
+pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn Write) -> io::Result<()> {
+    for block in blocks {
+        match block {
+            Block::Heading(heading) => writeln!(out, "<h3>{}</h3>", escape(heading))?,
+            Block::Pairs(pairs) => {
+                out.write_all(b"<dl>\n")?;
+                for pair in pairs {
+                    write!(out, "<div><dt>{}</dt><dd>", escape(&pair.name))?;
+                    text(&pair.value, out)?;
+                    out.write_all(b"</dd></div>\n")?;
+                }
+                out.write_all(b"</dl>\n")?;
+            }
+            Block::Table(of) if of.rows.iter().any(|row| row.kind == RowKind::Group) => grouped(of, out)?,
+            Block::Table(of) => table(of, out)?,
+            Block::Rung(of) => rung(document, of, out)?,
+            Block::Note(of) => note(of, out)?,
+            Block::Tree(items) => {
+                out.write_all(b"<ul class=tree>\n")?;
+                tree(items, out)?;
+                out.write_all(b"</ul>\n")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn note(note: &Note, out: &mut dyn Write) -> io::Result<()> {
+    let class = match note.kind {
+        NoteKind::Remark => "",
+        NoteKind::Warning => " w",
+        NoteKind::Error => " b",
+    };
+    write!(out, "<p class=\"note{class}\">")?;
+    if note.kind != NoteKind::Remark {
+        write!(out, "<strong>{}:</strong> ", note.kind.as_str())?;
+    }
+    text(&note.text, out)?;
+    out.write_all(b"</p>\n")
+}
+
+/// A text with its links.
+pub(super) fn text(text: &Text, out: &mut dyn Write) -> io::Result<()> {
+    for run in &text.runs {
+        match &run.link {
+            Some(link) => write!(out, "<a href=\"#{link}\">{}</a>", escape(&run.text))?,
+            None => write!(out, "{}", escape(&run.text))?,
+        }
+    }
+    Ok(())
+}
+
+fn class(column: Option<&Column>) -> &'static str {
+    match column.map(|column| column.kind) {
+        Some(ColumnKind::Number) => " class=n",
+        Some(ColumnKind::Fixed) => " class=f",
+        _ => "",
+    }
+}
+
+fn table(table: &Table, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(b"<div class=wide><table><thead><tr>")?;
+    for column in &table.columns {
+        write!(out, "<th{}>{}", class(Some(column)), escape(&column.title))?;
+    }
+    out.write_all(b"<tbody>\n")?;
+    for row in &table.rows {
+        plain(table, row, out)?;
+    }
+    out.write_all(b"</table></div>\n")
+}
+
+fn plain(table: &Table, row: &Row, out: &mut dyn Write) -> io::Result<()> {
+    match &row.anchor {
+        Some(anchor) => write!(out, "<tr id=\"{anchor}\">")?,
+        None => out.write_all(b"<tr>")?,
+    }
+    // Empty cells at the end say nothing.
+    let used = row.cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+    for (number, cell) in row.cells.iter().take(used).enumerate() {
+        write!(out, "<td{}>", class(table.columns.get(number)))?;
+        text(cell, out)?;
+    }
+    out.write_all(b"\n")
+}
+
+/// Groups as blocks of their own, which a browser can leave out while they are not in sight.
+fn grouped(table: &Table, out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(b"<div class=wide><table class=heads><thead><tr>")?;
+    for (number, column) in table.columns.iter().enumerate() {
+        write!(out, "<th class=c{number}>{}", escape(&column.title))?;
+    }
+    out.write_all(b"</table></div>\n")?;
+    let mut rows = table.rows.iter().peekable();
+    while let Some(row) = rows.next() {
+        if row.kind != RowKind::Group {
+            continue;
+        }
+        match &row.anchor {
+            Some(anchor) => write!(out, "<div class=g id=\"{anchor}\"><p>")?,
+            None => out.write_all(b"<div class=g><p>")?,
+        }
+        for (number, cell) in row.cells.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
+            let tag = match number {
+                0 => "b",
+                1 => "strong",
+                2 => "span",
+                _ => "i",
+            };
+            write!(out, "<{tag}>")?;
+            text(cell, out)?;
+            write!(out, "</{tag}> ")?;
+        }
+        out.write_all(b"</p>")?;
+        if rows.peek().is_some_and(|row| row.kind == RowKind::Plain) {
+            // Widths come from the first row.
+            out.write_all(b"<table>")?;
+            for number in 0..table.columns.len() {
+                write!(out, "<col class=c{number}>")?;
+            }
+            out.write_all(b"<tbody>\n")?;
+            while let Some(row) = rows.next_if(|row| row.kind == RowKind::Plain) {
+                plain(table, row, out)?;
+            }
+            out.write_all(b"</table>")?;
+        }
+        out.write_all(b"</div>\n")?;
+    }
+    Ok(())
+}
+
+fn tree(items: &[TreeItem], out: &mut dyn Write) -> io::Result<()> {
+    for item in items {
+        out.write_all(b"<li><span>")?;
+        text(&item.text, out)?;
+        out.write_all(b"</span>")?;
+        if !item.items.is_empty() {
+            out.write_all(b"<ul>\n")?;
+            tree(&item.items, out)?;
+            out.write_all(b"</ul>")?;
+        }
+        out.write_all(b"</li>\n")?;
+    }
+    Ok(())
+}
+
+fn rung(document: &Document<'_>, rung: &Rung<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let scene = rung.scene(&render::Style::graphic(WIDTH));
+    let href = |address: &str| document.place_of_address(address).map(|place| format!("#{place}"));
+    let label = format!("Rung {}", rung.label);
+    let options = svg::Options { href: &href, label: &label, ..svg::Options::default() };
+    writeln!(
+        out,
+        "<div class=\"r s{}\" id=\"{}\" data-rung=\"{}\">{}</div>",
+        size(scene.height),
+        rung.anchor,
+        escape(&rung.label),
+        svg::drawing(&scene, &options)
+    )
+}
+
+/// The class that tells a browser about how high something of so many rows is.
+fn size(rows: usize) -> usize {
+    const ROWS: [usize; 6] = [6, 10, 16, 28, 50, 100];
+    ROWS.iter().position(|most| rows <= *most).unwrap_or(ROWS.len())
+}
