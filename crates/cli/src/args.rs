@@ -551,7 +551,7 @@ pub struct ProveArguments {
 
 #[derive(Args)]
 pub struct DiffArguments {
-    /// The old program: a project, SLC text or JSON project; or a folder of projects
+    /// The old program: a project, SLC text, JSON project or Do-more text; or a folder of projects
     #[arg(value_name = "A")]
     pub old: PathBuf,
     /// The new program, or a folder: its files are found by name, then by content
@@ -566,6 +566,9 @@ pub struct DiffArguments {
     /// Unified text for reviews: rungs as SLC text with their neighbours, then the other sections
     #[arg(long, conflicts_with_all = ["two_sided", "json"])]
     pub unified: bool,
+    /// Write a page with the rungs drawn side by side instead; for two folders a folder of pages with a list
+    #[arg(long, value_name = "OUT", conflicts_with_all = ["json", "unified", "two_sided"])]
+    pub html: Option<PathBuf>,
     /// Rungs drawn side by side, whatever the width
     #[arg(long)]
     pub two_sided: bool,

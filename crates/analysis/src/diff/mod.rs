@@ -202,6 +202,11 @@ pub struct ValueChange {
     pub new: Vec<String>,
 }
 
+/// A rung of RSLogix 500 as words: mnemonics, operands and branch marks in order, none of them marked.
+pub fn words(rung: &ladder::Rung) -> Vec<Word> {
+    inside::words::<rslogix::Rslogix>(rung)
+}
+
 /// Compares two programs.
 ///
 /// ```

@@ -8,6 +8,11 @@ use ladder::{Documentation, Image};
 
 use crate::Rung;
 
+/// Instructions and branch marks in order, each after a blank.
+fn rslogix_text(rung: &ladder::Rung) -> String {
+    analysis::diff::words(rung).into_iter().map(|word| word.text).collect::<Vec<_>>().join(" ")
+}
+
 /// A program beside another one.
 #[derive(Clone, Debug)]
 pub struct Side<'a> {
@@ -64,6 +69,52 @@ impl<'a> Side<'a> {
         }
     }
 
+    /// The rung as one line of text.
+    pub fn text(&self, at: Place) -> String {
+        match &self.dialect {
+            Dialect::Rslogix { image, .. } => {
+                let rung = image.program_file(at.file).and_then(|file| file.rungs.get(at.rung));
+                rung.map(rslogix_text).unwrap_or_default()
+            }
+            Dialect::Domore { .. } => {
+                let rung = self.block(at.file).and_then(|block| block.rungs.get(at.rung));
+                let all = rung.into_iter().flat_map(|rung| &rung.instructions).map(ToString::to_string);
+                all.collect::<Vec<_>>().join("; ")
+            }
+        }
+    }
+
+    /// The symbol or nickname of an operand, if it has one.
+    pub fn symbol(&self, operand: &str) -> Option<String> {
+        match &self.dialect {
+            Dialect::Rslogix { documentation, .. } => {
+                let address = ladder::Address::parse(operand).ok()?;
+                documentation.shown(&ladder::Target::from(&address), "").symbol
+            }
+            Dialect::Domore { documentation, .. } => {
+                let name = documentation.shown(operand).name;
+                (!name.is_empty()).then(|| name.into_owned())
+            }
+        }
+    }
+
+    /// What the box of an instruction calls its operand `index` (from 0); empty where there is only one.
+    pub fn operand_name(&self, mnemonic: &str, index: usize) -> Option<&'static str> {
+        let (count, name) = match &self.dialect {
+            Dialect::Rslogix { image, .. } => {
+                let entry = instr::by_mnemonic(mnemonic)?;
+                let fits = |form: &&instr::Form| index < form.operands.len();
+                let form = entry.forms_for(image.family()).find(fits).or_else(|| entry.forms.iter().find(fits))?;
+                (form.operands.len(), form.operands.get(index)?.name)
+            }
+            Dialect::Domore { .. } => {
+                let entry = domore::instruction::by_mnemonic(mnemonic)?;
+                (entry.operands.len(), entry.operand(index)?.name)
+            }
+        };
+        Some(if count == 1 { "" } else { name })
+    }
+
     /// Page title and comment of a rung, line by line.
     pub fn comment(&self, at: Place) -> Vec<String> {
         match &self.dialect {
@@ -109,6 +160,21 @@ impl<'a> Side<'a> {
             "" => "(rungs without a code block)".to_owned(),
             name => name.to_owned(),
         })
+    }
+
+    /// Whether a part of this program is known by the same number or name as one of another program. Of several code
+    /// blocks of one name each is the one at its place among them.
+    pub(super) fn is_same(&self, number: u16, other: &Side<'_>, others: u16) -> bool {
+        let name = |side: &Side<'_>, number: u16| -> Option<(String, usize)> {
+            let Dialect::Domore { blocks, .. } = &side.dialect else { return None };
+            let block = side.block(number)?;
+            let before = blocks.iter().take(usize::from(number)).filter(|other| other.name == block.name).count();
+            Some((block.name.clone(), before))
+        };
+        match (name(self, number), name(other, others)) {
+            (None, None) => number == others,
+            (a, b) => a == b,
+        }
     }
 
     /// Everything that has rungs, in order.

@@ -58,7 +58,10 @@ pub(super) fn refuse(
     if how.is_none() {
         return Err(Error::Use(printable(&message)));
     }
-    if printer.json {
+    if let Some(pages) = &printer.pages {
+        let remark = "not compared: one is a program of RSLogix 500, the other one of Do-more";
+        pages.without_page(&old.display().to_string(), &new.display().to_string(), remark);
+    } else if printer.json {
         writeln!(out, "{}", json!({"file": new.display().to_string(), "error": message}))?;
     }
     eprintln!("{}", printable(&message));

@@ -146,7 +146,10 @@ fn only_in(
     out: &mut dyn Write,
 ) -> Result<Outcome, Error> {
     let (file, folder) = (found.path.display().to_string(), folder.display().to_string());
-    if printer.json {
+    if let Some(pages) = &printer.pages {
+        let (old, new) = if change == "removed" { (file.as_str(), "") } else { ("", file.as_str()) };
+        pages.without_page(old, new, change);
+    } else if printer.json {
         writeln!(out, "{}", json!({"file": file, "only_in": folder, "change": change}))?;
     } else {
         writeln!(Printable(out), "{file}: only in {folder} ({change})\n")?;
@@ -166,7 +169,9 @@ fn duplicates(folder: &Path, found: &[Found], printer: &Printer, out: &mut dyn W
     groups.sort_by(|a, b| a.first().map(|file| &file.name).cmp(&b.first().map(|file| &file.name)));
     for group in groups {
         let names: Vec<String> = group.iter().map(|file| file.path.display().to_string()).collect();
-        if printer.json {
+        if let Some(pages) = &printer.pages {
+            pages.without_page("", "", &format!("the same bytes: {}", names.join(", ")));
+        } else if printer.json {
             writeln!(out, "{}", json!({"folder": folder.display().to_string(), "same_bytes": names}))?;
         } else {
             writeln!(Printable(&mut *out), "Same bytes: {}\n", names.join(", "))?;

@@ -2,6 +2,7 @@
 
 mod do_more;
 mod folders;
+mod html;
 pub(super) mod json;
 pub(super) mod text;
 mod text_side;
@@ -84,6 +85,7 @@ struct Printer {
     json: bool,
     unified: bool,
     look: text::Look,
+    pages: Option<html::Pages>,
 }
 
 pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
@@ -92,6 +94,10 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
         Some((width, _)) if terminal => width.0.into(),
         _ => PIPE_WIDTH,
     });
+    let compared: Vec<&Path> =
+        [Some(&arguments.old), arguments.new.as_ref()].into_iter().flatten().map(|it| &**it).collect();
+    let folder = compared.len() == 2 && compared.iter().all(|path| path.is_dir());
+    let pages = arguments.html.as_ref().map(|target| html::Pages::new(target, &compared, folder)).transpose()?;
     let printer = Printer {
         sections: Sections::of(&arguments.only),
         json: arguments.json,
@@ -101,6 +107,7 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
             two_sided: arguments.two_sided || width >= TWO_SIDED,
             color: terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
         },
+        pages,
     };
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     let outcome = match (&arguments.new, arguments.online) {
@@ -117,6 +124,13 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
             _ => return Err(Error::Use("expected two files or two folders, found one of each".to_owned())),
         },
     };
+    if let Some(pages) = &printer.pages {
+        // What was not readable has no page.
+        if folder || outcome != Outcome::Unreadable || pages.has_page() {
+            let path = pages.finish(&arguments.old, arguments.new.as_deref().unwrap_or(Path::new("")))?;
+            writeln!(Printable(&mut out), "{}", path.display())?;
+        }
+    }
     out.flush()?;
     Ok(outcome)
 }
@@ -161,7 +175,12 @@ fn pair(
             return do_more::compare((old, &a), (new, &b), how, printer, out);
         }
         (Some(_), Some(_)) => return do_more::refuse(old, new, how, printer, out),
-        _ => return Ok(Outcome::Unreadable),
+        _ => {
+            if let Some(pages) = &printer.pages {
+                pages.without_page(&old.display().to_string(), &new.display().to_string(), "could not be read");
+            }
+            return Ok(Outcome::Unreadable);
+        }
     };
     let (x, y) = (Program::main(old, &a), Program::main(new, &b));
     let mut difference = compare(
@@ -247,7 +266,9 @@ impl Printer {
     ) -> Result<Outcome, Error> {
         self.sections.apply(&mut difference);
         let (old, new) = (both.names.0.as_str(), both.names.1.as_str());
-        if self.json {
+        if let Some(pages) = &self.pages {
+            pages.page(both, how, self.sections, &difference)?;
+        } else if self.json {
             let mut document = json::describe(old, new, &difference);
             if both.rslogix.is_none() {
                 do_more::name_places(&mut document, &difference, &both.sides);

@@ -2,10 +2,8 @@
 
 use std::io::{self, Write};
 
-use analysis::diff::{
-    Change, ChangeKind, Difference, Edit, EditKind, FileChange, LogicChange, Place, RungChange, ValueChange, Word,
-};
-use report::diff::Side;
+use analysis::diff::{Change, ChangeKind, Difference, FileChange, LogicChange, Place, RungChange, ValueChange, Word};
+use report::diff::{Side, sentence};
 
 use super::Sections;
 
@@ -31,6 +29,9 @@ const MOST_ENTRIES: usize = 400;
 const OLD: &str = "\x1B[31m";
 const NEW: &str = "\x1B[32m";
 const HEAD: &str = "\x1B[1m";
+/// Reversed, and back.
+const STRONG: &str = "\x1B[7m";
+const PLAIN: &str = "\x1B[27m";
 const OFF: &str = "\x1B[0m";
 
 struct Writer<'w> {
@@ -154,7 +155,7 @@ impl Writer<'_> {
         self.plain("")?;
         self.line(HEAD, &format!("  {}", headline_of(found, programs)))?;
         for edit in &found.edits {
-            self.plain(&format!("      {}", sentence(edit)))?;
+            self.plain(&format!("      {}", sentence(edit, Some(programs))))?;
         }
         if self.look.two_sided && self.drawn(programs, found)? {
             return Ok(());
@@ -174,32 +175,37 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// A rung as text, broken at words, with a line of marks below what differs.
+    /// A rung as text, broken at words; what differs stands out by colour, else by a line of marks below.
     fn marked(&mut self, sign: char, color: &str, words: &[Word]) -> io::Result<()> {
         let room = self.look.width.saturating_sub(5).max(20);
-        let (mut text, mut marks, mut columns) = (String::new(), String::new(), 0);
         let lead = format!("  {sign} ");
+        let (mut line, mut columns) = (Vec::new(), 0);
         for word in words {
             let shown = render::clean(&word.text).into_owned();
             let width = shown.chars().count();
             if columns > 0 && columns + 1 + width > room {
-                self.marked_line(&lead, color, &text, &marks)?;
-                (text, marks, columns) = (String::new(), String::new(), 0);
+                self.marked_line(&lead, color, &line)?;
+                (line, columns) = (Vec::new(), 0);
             }
-            if columns > 0 {
-                text.push(' ');
-                marks.push(' ');
-                columns += 1;
-            }
-            text.push_str(&shown);
-            marks.extend(std::iter::repeat_n(if word.marked { '^' } else { ' ' }, width));
-            columns += width;
+            columns += width + usize::from(columns > 0);
+            line.push((shown, word.marked));
         }
-        if columns > 0 { self.marked_line(&lead, color, &text, &marks) } else { Ok(()) }
+        if line.is_empty() { Ok(()) } else { self.marked_line(&lead, color, &line) }
     }
 
-    fn marked_line(&mut self, lead: &str, color: &str, text: &str, marks: &str) -> io::Result<()> {
-        self.line(color, &format!("{lead}{text}"))?;
+    fn marked_line(&mut self, lead: &str, color: &str, words: &[(String, bool)]) -> io::Result<()> {
+        if self.look.color {
+            let word = |(text, marked): &(String, bool)| match marked {
+                true => format!("{STRONG}{text}{PLAIN}"),
+                false => text.clone(),
+            };
+            let text = words.iter().map(word).collect::<Vec<_>>().join(" ");
+            return writeln!(self.out, "{color}{lead}{text}{OFF}");
+        }
+        let text: Vec<&str> = words.iter().map(|word| word.0.as_str()).collect();
+        self.plain(&format!("{lead}{}", text.join(" ")))?;
+        let mark = |(text, marked): &(String, bool)| if *marked { "^" } else { " " }.repeat(text.chars().count());
+        let marks = words.iter().map(mark).collect::<Vec<_>>().join(" ");
         let marks = marks.trim_end();
         if marks.is_empty() { Ok(()) } else { self.plain(&format!("{}{marks}", " ".repeat(lead.len()))) }
     }
@@ -309,22 +315,5 @@ fn headline_with(found: &RungChange, words: &dyn Fn(bool, Place) -> (String, Str
         (Some(old), None) => format!("{} deleted", name(false, old)),
         (None, Some(new)) => format!("{} inserted", name(true, new)),
         (None, None) => String::new(),
-    }
-}
-
-/// What changed inside a rung, for a person.
-pub fn sentence(edit: &Edit) -> String {
-    let Edit { mnemonic, old, new, .. } = edit;
-    let filled = |text: &str| if text.is_empty() { "nothing".to_owned() } else { text.to_owned() };
-    match edit.kind {
-        EditKind::Operand => {
-            let number = edit.operand.map_or(0, |operand| operand + 1);
-            format!("{mnemonic}, operand {number}: {} -> {}", filled(old), filled(new))
-        }
-        EditKind::Setting => format!("{mnemonic}, {} -> {}", filled(old), filled(new)),
-        EditKind::Instruction => format!("{old} is now {new}"),
-        EditKind::Inserted => format!("inserted {new}"),
-        EditKind::Deleted => format!("deleted {old}"),
-        EditKind::Branches => "branches begin, divide or end elsewhere".to_owned(),
     }
 }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use analysis::diff::{Change, ChangeKind, Difference, LogicChange, RungChange, ValueChange};
+use report::diff::sentence;
 
-use crate::commands::diff::text::{headline, sentence};
+use crate::commands::diff::text::headline;
 
 /// Columns of one line of a change; what is longer is cut, `rungs diff` has it whole.
 const WIDTH: usize = 110;
@@ -83,7 +84,7 @@ fn rung_line(rung: &RungChange) -> String {
     }
     let words = if rung.kind == ChangeKind::Deleted { &rung.old_words } else { &rung.new_words };
     let text = || words.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
-    let edits = || rung.edits.iter().map(sentence).collect::<Vec<_>>().join("; ");
+    let edits = || rung.edits.iter().map(|edit| sentence(edit, None)).collect::<Vec<_>>().join("; ");
     let told = if rung.edits.is_empty() { text() } else { edits() };
     cut(&format!("{line}: {}", if told.is_empty() { "an empty rung" } else { &told }))
 }
