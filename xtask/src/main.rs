@@ -37,7 +37,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
     Chore {
         name: "nightly",
-        help: "at length: 10,000 random programs against the interpreter, 10,000 scans of every project, 200 mutants of every proven one",
+        help: "at length: 10,000 random programs against the interpreter, 10,000 scans and a report of every project, 200 mutants of every proven one",
         run: |_| nightly(),
     },
     Chore {
@@ -101,6 +101,8 @@ fn nightly() -> Outcome {
         let mut command = cargo_command(&["test", "--release", "--package", "sim", "--test", test]);
         run(command.args(["--", "--nocapture"]).env(variable, "10000"))?;
     }
+    let mut reports = cargo_command(&["test", "--release", "--package", "rungs-tests", "--test", "report_pdf"]);
+    run(reports.args(["--", "--nocapture"]).env("RUNGS_REPORTS", "all"))?;
     let mut mutants = cargo_command(&["test", "--release", "--package", "analysis", "--test", "mutants"]);
     run(mutants.args(["--", "--nocapture"]).env("RUNGS_MUTANTS", "200"))
 }

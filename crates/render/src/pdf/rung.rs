@@ -309,11 +309,12 @@ fn harm(scene: &Scene) -> Vec<u32> {
     let mut taken: Vec<Vec<(usize, usize)>> = vec![Vec::new(); scene.height];
     for item in &scene.items {
         let columns = match &item.shape {
-            Shape::Frame { height, .. } => {
+            Shape::Frame { height, width, .. } => {
                 for at in harm.iter_mut().skip(item.y + 1).take(height.saturating_sub(1)) {
                     *at += 4;
                 }
-                continue;
+                // Labels stand above it.
+                *width
             }
             Shape::Text(Role::Comment | Role::Title | Role::Note | Role::EditMark, _) => continue,
             Shape::Text(_, text) => width(text),
