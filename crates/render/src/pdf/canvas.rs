@@ -15,8 +15,17 @@ pub struct Color(pub f32, pub f32, pub f32);
 impl Color {
     /// Black.
     pub const BLACK: Color = Color(0.0, 0.0, 0.0);
-    /// White.
-    pub const WHITE: Color = Color(1.0, 1.0, 1.0);
+
+    /// Of a number `0xRRGGBB`.
+    pub const fn of(hex: u32) -> Color {
+        let [_, red, green, blue] = hex.to_be_bytes();
+        // Three digits are more than the 256 steps there are.
+        Color(part(red), part(green), part(blue))
+    }
+}
+
+const fn part(value: u8) -> f32 {
+    (value as f32 / 0.255) as u16 as f32 / 1000.0
 }
 
 /// A rectangle in points from the top left corner of the page.

@@ -5,10 +5,10 @@
 
 use std::ops::Range;
 
-use super::canvas::{Area, Canvas, Color, Letters};
-use super::font::Font;
-use crate::paint::{arrow_columns, has_arrow};
-use crate::scene::{Direction, Item, Role, Scene, Shape};
+use super::canvas::{self, Canvas, Color, Letters};
+use super::font::{Font, printable};
+use crate::figure::{self, Area, BASELINE, CELL_HEIGHT, CELL_WIDTH, Group, Ink, Line, Pen, Step};
+use crate::scene::{Role, Scene, Shape, Spot};
 use crate::text::width;
 
 /// Where a scene stands on a page.
@@ -31,22 +31,31 @@ impl Grid {
     }
 }
 
-/// Wires, rails, frames and what names them.
-const WIRE: Color = Color(0.08, 0.16, 0.45);
-const REMARK: Color = Color(0.6, 0.05, 0.05);
-const COMMENT_BAND: Color = Color(1.0, 0.97, 0.8);
-const SYMBOL_BAND: Color = Color(0.84, 0.94, 0.84);
+/// A colour of the style sheet of drawings, by its name there.
+macro_rules! colors {
+    ($($name:ident $property:literal $hex:literal;)*) => {
+        $(const $name: Color = Color::of($hex);)*
+        #[cfg(test)]
+        const COLORS: &[(&str, u32)] = &[$(($property, $hex)),*];
+    };
+}
 
-const WIRE_WIDTH: f32 = 0.7;
-const RAIL_WIDTH: f32 = 1.2;
-const SIGN_WIDTH: f32 = 1.1;
-/// Half the height of contacts and coils, in rows.
-const SIGN: f32 = 0.44;
+// The light half of the style sheet: paper is white.
+colors! {
+    WIRE "wire" 0x1f3fae;
+    INK "ink" 0x111111;
+    SOFT "soft" 0x555555;
+    SYMBOL "symbol" 0xcdeccd;
+    COMMENT "comment" 0xfff6c4;
+    ON "on" 0x15803d;
+    FORCE "force" 0xb00020;
+    NOTE "note" 0xa04000;
+}
 
 /// Narrower than this, a text is hard to read.
 const LEGIBLE: f32 = 0.7;
 
-/// Paints `rows` of a scene. `place` gives the name of the place an address in the rung leads to.
+/// Paints `rows` of a scene. `place` gives the name of the place an address leads to.
 ///
 /// Returns the texts that had to be made so narrow that they are hard to read, spelled out: characters
 /// the fonts lack take more room than the layout gave them.
@@ -57,18 +66,62 @@ pub fn rung(
     grid: &Grid,
     place: &mut dyn FnMut(&str) -> Option<String>,
 ) -> Vec<String> {
+    let figure = figure::figure(scene);
+    let spot = |group: &Group| scene.instructions.iter().find(|spot| spot.index == group.index);
     let mut painter = Painter { canvas, rows, grid: *grid, narrowed: Vec::new() };
-    painter.bands(scene);
-    for item in &scene.items {
-        painter.wires(item);
+    let groups = || figure.instructions.iter().map(|group| (&group.inks, spot(group)));
+    let all = || std::iter::once((&figure.rung, None)).chain(groups());
+    for (inks, _) in all() {
+        inks.iter().for_each(|ink| painter.background(ink));
     }
-    for item in &scene.items {
-        painter.sign(item);
+    for group in &figure.instructions {
+        if spot(group).is_some_and(|spot| spot.state == Some(true)) {
+            group.bars.iter().for_each(|bar| painter.fill(*bar, ON));
+        }
     }
-    for item in &scene.items {
-        painter.text(item, place);
+    for (_, steps) in &figure.wires {
+        painter.stroke(steps, pen(Pen::Wire, None));
+    }
+    for (inks, spot) in all() {
+        for ink in inks {
+            if let Ink::Stroke(kind, steps) = ink {
+                painter.stroke(steps, pen(*kind, spot));
+            }
+        }
+    }
+    for (inks, _) in all() {
+        for ink in inks {
+            if let Ink::Text(line) = ink {
+                painter.text(line, place);
+            }
+        }
     }
     painter.narrowed
+}
+
+/// Width in points and colour of a stroke. What conducts is thicker, so that it shows without its colour.
+fn pen(pen: Pen, spot: Option<&Spot>) -> (f32, Color) {
+    let on = spot.is_some_and(|spot| spot.state == Some(true));
+    let forced = spot.is_some_and(|spot| spot.forced.is_some());
+    match pen {
+        Pen::Rail => (1.2, WIRE),
+        Pen::Wire => (0.8, WIRE),
+        Pen::Sign => (if on { 1.7 } else { 1.0 }, if forced { FORCE } else { INK }),
+        Pen::Frame => (if on { 1.7 } else { 0.8 }, INK),
+    }
+}
+
+/// Font and colour of a text.
+fn letters(role: Role) -> (Font, Color) {
+    match role {
+        Role::Title | Role::Symbol | Role::Address | Role::EditMark => (Font::MonoBold, INK),
+        Role::Mnemonic | Role::RungNumber => (Font::MonoBold, WIRE),
+        Role::Module | Role::Name => (Font::Mono, SOFT),
+        Role::Force => (Font::MonoBold, FORCE),
+        Role::State => (Font::MonoBold, ON),
+        Role::Note => (Font::Mono, NOTE),
+        Role::Comment | Role::Description | Role::BoxTitle | Role::Operand | Role::Value => (Font::Mono, INK),
+    }
 }
 
 struct Painter<'a> {
@@ -79,206 +132,85 @@ struct Painter<'a> {
 }
 
 impl Painter<'_> {
-    /// Left side of a column; halves are the middle of a cell.
-    fn x(&self, column: f32) -> f32 {
-        self.grid.left + column * self.grid.cell
+    /// A place of the figure on the page.
+    fn at(&self, (x, y): (usize, usize)) -> (f32, f32) {
+        let (x, y) = (x as f32 / CELL_WIDTH as f32, y as f32 / CELL_HEIGHT as f32 - self.rows.start as f32);
+        (self.grid.left + x * self.grid.cell, self.grid.top + y * self.grid.row)
     }
 
-    /// Upper side of a row, on the page or beyond its ends.
-    fn y(&self, row: f32) -> f32 {
-        self.grid.top + (row - self.rows.start as f32) * self.grid.row
+    /// Upper and lower end of what is painted, in units of the figure.
+    fn ends(&self) -> (usize, usize) {
+        (self.rows.start * CELL_HEIGHT, self.rows.end * CELL_HEIGHT)
     }
 
-    /// A wire downwards, as far as it is in the rows.
-    fn down(&mut self, column: usize, from: f32, to: f32, width: f32) {
-        let (from, to) = (from.max(self.rows.start as f32), to.min(self.rows.end as f32));
-        if from < to {
-            let x = self.x(column as f32 + 0.5);
-            let points = [(x, self.y(from)), (x, self.y(to))];
-            self.canvas.line(&points, width, WIRE);
+    fn background(&mut self, ink: &Ink) {
+        match ink {
+            Ink::Fill(Role::Title | Role::Symbol, area) => self.fill(*area, SYMBOL),
+            Ink::Fill(_, area) => self.fill(*area, COMMENT),
+            Ink::Stroke(..) | Ink::Text(_) => {}
         }
     }
 
-    fn across(&mut self, from: f32, to: f32, row: usize) {
-        if self.rows.contains(&row) && from < to {
-            let y = self.y(row as f32 + 0.5);
-            self.canvas.line(&[(self.x(from), y), (self.x(to), y)], WIRE_WIDTH, WIRE);
+    /// Fills the part of an area that is in the rows.
+    fn fill(&mut self, area: Area, color: Color) {
+        let (first, last) = self.ends();
+        let (top, bottom) = (area.y.max(first), (area.y + area.height).min(last));
+        if top < bottom {
+            let ((left, top), (right, bottom)) = (self.at((area.x, top)), self.at((area.x + area.width, bottom)));
+            self.canvas.fill(canvas::Area { left, top, right, bottom }, color);
         }
     }
 
-    /// The areas behind comments, titles, descriptions and symbols. Labels above one instruction are as
-    /// wide as the widest of them.
-    fn bands(&mut self, scene: &Scene) {
-        let rails = || scene.items.iter().filter(|item| item.shape == Shape::Rail).map(|item| item.x);
-        let (first, last) = (rails().min().unwrap_or(0), rails().max().unwrap_or(scene.width));
-        let mut labels: Vec<(usize, usize, usize, Role)> = Vec::new();
-        for item in &scene.items {
-            let Shape::Text(role, text) = &item.shape else { continue };
-            match role {
-                Role::Title => self.band(first as f32 + 1.0, last as f32, item.y, SYMBOL_BAND),
-                Role::Comment => self.band(first as f32 + 1.0, last as f32, item.y, COMMENT_BAND),
-                Role::Description | Role::Symbol => labels.push((item.x, item.y, width(text), *role)),
+    /// Draws the part of a path that is in the rows. Only lines straight down leave a row.
+    fn stroke(&mut self, steps: &[Step], (width, color): (f32, Color)) {
+        let (first, last) = self.ends();
+        let mut from = (0, 0);
+        let mut open: Vec<(f32, f32)> = Vec::new();
+        for step in steps {
+            let (Step::Move(x, y) | Step::Line(x, y) | Step::Curve(_, _, (x, y))) = *step;
+            let to = (x, y);
+            let (top, bottom) = (from.1.min(y), from.1.max(y));
+            match *step {
+                Step::Line(..) if top >= first && bottom <= last => {
+                    if open.is_empty() {
+                        open.push(self.at(from));
+                    }
+                    open.push(self.at(to));
+                    from = to;
+                    continue;
+                }
+                Step::Line(..) if from.0 == x && top.max(first) < bottom.min(last) => {
+                    let part = [self.at((x, top.max(first))), self.at((x, bottom.min(last)))];
+                    self.canvas.line(&part, width, color);
+                }
+                Step::Curve(one, two, _) if top >= first && bottom <= last => {
+                    self.canvas.curve([from, one, two, to].map(|point| self.at(point)), width, color);
+                }
                 _ => {}
             }
+            self.canvas.line(&std::mem::take(&mut open), width, color);
+            from = to;
         }
-        labels.sort_unstable_by_key(|(x, y, ..)| (*x, *y));
-        for stack in labels.chunk_by(|(x, y, ..), (next, below, ..)| x == next && *below == y + 1) {
-            let columns = stack.iter().map(|(.., columns, _)| *columns).max().unwrap_or(0);
-            for (x, y, _, role) in stack {
-                let color = if *role == Role::Symbol { SYMBOL_BAND } else { COMMENT_BAND };
-                self.band(*x as f32 - 0.3, (x + columns) as f32 + 0.3, *y, color);
-            }
-        }
+        self.canvas.line(&open, width, color);
     }
 
-    fn band(&mut self, from: f32, to: f32, row: usize, color: Color) {
-        if self.rows.contains(&row) {
-            let (top, bottom) = (self.y(row as f32), self.y(row as f32 + 1.0));
-            self.canvas.fill(Area { left: self.x(from), top, right: self.x(to), bottom }, color);
-        }
-    }
-
-    fn wires(&mut self, item: &Item) {
-        let Item { x, y, ref shape, .. } = *item;
-        let middle = y as f32 + 0.5;
-        match shape {
-            Shape::Across { length, .. } => self.across(x as f32 + 0.5, (x + length) as f32 + 0.5, y),
-            Shape::Down { length, .. } => self.down(x, middle, middle + *length as f32, WIRE_WIDTH),
-            Shape::Rail => self.down(x, y as f32, self.rows.end as f32, RAIL_WIDTH),
-            Shape::Frame { width, height, .. } => {
-                let (right, bottom) = (x + width.saturating_sub(1), y + height.saturating_sub(1));
-                for row in [y, bottom] {
-                    self.across(x as f32 + 0.5, right as f32 + 0.5, row);
-                }
-                for side in [x, right] {
-                    self.down(side, middle, bottom as f32 + 0.5, WIRE_WIDTH);
-                }
-            }
-            Shape::Text(..) | Shape::Contact { .. } | Shape::Coil(_) | Shape::Marked(_) => {}
-        }
-    }
-
-    /// Contacts, coils, brackets and the arrow heads of wires.
-    fn sign(&mut self, item: &Item) {
-        let Item { x, y, ref shape, .. } = *item;
-        match shape {
-            Shape::Across { length, arrows: Some(direction) } if self.rows.contains(&y) => {
-                let tip = if *direction == Direction::Right { 0.5 } else { -0.5 };
-                for column in arrow_columns(x, *length) {
-                    self.arrow(column as f32 + 0.5, y as f32 + 0.5, (tip, 0.0));
-                }
-            }
-            Shape::Down { length, arrows: true } => {
-                for row in self.rows.clone().filter(|row| has_arrow(y, y + length, *row)) {
-                    self.arrow(x as f32 + 0.5, row as f32 + 0.5, (0.0, 0.35));
-                }
-            }
-            _ if !self.rows.contains(&y) => {}
-            Shape::Contact { closed } => self.contact(x as f32, y as f32, *closed),
-            Shape::Coil(letters) => self.coil(x as f32, y as f32, width(letters).max(1) as f32),
-            Shape::Marked(letters) => self.brackets(x as f32, y as f32, width(letters) as f32),
-            _ => {}
-        }
-    }
-
-    /// An arrow head about a point of the grid; `tip` is from there to its tip.
-    fn arrow(&mut self, x: f32, y: f32, tip: (f32, f32)) {
-        let (along, up) = tip;
-        let wings = if up == 0.0 { (0.0, 0.25) } else { (0.4, 0.0) };
-        let points = [
-            (self.x(x + along), self.y(y + up)),
-            (self.x(x - along + wings.0), self.y(y - up + wings.1)),
-            (self.x(x - along - wings.0), self.y(y - up - wings.1)),
-        ];
-        self.canvas.polygon(&points, WIRE);
-    }
-
-    fn contact(&mut self, x: f32, y: f32, closed: bool) {
-        let (top, middle, bottom) = (self.y(y + 0.5 - SIGN), self.y(y + 0.5), self.y(y + 0.5 + SIGN));
-        let (left, right) = (self.x(x + 0.95), self.x(x + 2.05));
-        // Wires end in the middle of the outer cells.
-        for (from, to) in [(self.x(x + 0.5), left), (right, self.x(x + 2.5))] {
-            self.canvas.line(&[(from, middle), (to, middle)], WIRE_WIDTH, WIRE);
-        }
-        for side in [left, right] {
-            self.canvas.line(&[(side, top), (side, bottom)], SIGN_WIDTH, WIRE);
-        }
-        if closed {
-            let points = [(self.x(x + 0.8), bottom), (self.x(x + 2.2), top)];
-            self.canvas.line(&points, SIGN_WIDTH, WIRE);
-        }
-    }
-
-    fn coil(&mut self, x: f32, y: f32, letters: f32) {
-        let (top, bottom) = (self.y(y + 0.5 - SIGN), self.y(y + 0.5 + SIGN));
-        // A wire may run through the cells of the sign.
-        self.canvas.fill(Area { left: self.x(x + 0.55), top, right: self.x(x + letters + 1.45), bottom }, Color::WHITE);
-        // The sides bulge as far as the wires come.
-        for (end, bulge) in [(x + 1.0, x + 0.3), (x + letters + 1.0, x + letters + 1.7)] {
-            let (end, bulge) = (self.x(end), self.x(bulge));
-            self.canvas.curve([(end, top), (bulge, top), (bulge, bottom), (end, bottom)], SIGN_WIDTH, WIRE);
-        }
-    }
-
-    fn brackets(&mut self, x: f32, y: f32, letters: f32) {
-        let (top, bottom) = (self.y(y + 0.5 - SIGN), self.y(y + 0.5 + SIGN));
-        self.canvas.fill(Area { left: self.x(x + 0.5), top, right: self.x(x + letters + 1.5), bottom }, Color::WHITE);
-        for (end, side) in [(x + 0.9, x + 0.5), (x + letters + 1.1, x + letters + 1.5)] {
-            let (end, side) = (self.x(end), self.x(side));
-            self.canvas.line(&[(end, top), (side, top), (side, bottom), (end, bottom)], SIGN_WIDTH, WIRE);
-        }
-    }
-
-    fn text(&mut self, item: &Item, place: &mut dyn FnMut(&str) -> Option<String>) {
-        let Item { x, y, ref shape, .. } = *item;
-        if !self.rows.contains(&y) {
+    fn text(&mut self, line: &Line, place: &mut dyn FnMut(&str) -> Option<String>) {
+        let top = line.y.saturating_sub(BASELINE);
+        if !self.rows.contains(&(top / CELL_HEIGHT)) {
             return;
         }
-        match shape {
-            Shape::Text(role, text) => {
-                self.write(x, y, *role, text);
-                if matches!(role, Role::Address | Role::Operand)
-                    && let Some(target) = place(text.trim_end_matches('<'))
-                {
-                    self.canvas.link(self.area(x, y, width(text)), &target);
-                }
-            }
-            Shape::Coil(letters) | Shape::Marked(letters) => self.write(x + 1, y, Role::Mnemonic, letters),
-            Shape::Frame { width: frame, name, .. } if !name.is_empty() => {
-                let at = x + frame.saturating_sub(width(name)) / 2;
-                // The name stands in the upper side of the frame, which is left open for it.
-                let Area { left, top, right, bottom } = self.area(at, y, width(name));
-                let margin = self.grid.cell * 0.2;
-                self.canvas.fill(Area { left: left - margin, top, right: right + margin, bottom }, Color::WHITE);
-                self.write(at, y, Role::Mnemonic, name);
-            }
-            _ => {}
-        }
-    }
-
-    fn area(&self, x: usize, y: usize, columns: usize) -> Area {
-        let (left, right) = (self.x(x as f32), self.x((x + columns) as f32));
-        Area { left, top: self.y(y as f32), right, bottom: self.y(y as f32 + 1.0) }
-    }
-
-    fn write(&mut self, x: usize, y: usize, role: Role, text: &str) {
-        let (font, color) = match role {
-            Role::RungNumber | Role::EditMark | Role::Mnemonic => (Font::MonoBold, WIRE),
-            Role::Title => (Font::MonoBold, Color::BLACK),
-            Role::BoxTitle | Role::Name => (Font::Mono, WIRE),
-            Role::Note => (Font::Mono, REMARK),
-            Role::Symbol | Role::Address | Role::Force | Role::State => (Font::MonoBold, Color::BLACK),
-            Role::Comment | Role::Description | Role::Module | Role::Operand | Role::Value => {
-                (Font::Mono, Color::BLACK)
-            }
-        };
+        let (font, color) = letters(line.role);
         let size = self.grid.size();
-        let Area { left, top, right, bottom } = self.area(x, y, width(text));
+        let ((left, upper), (right, lower)) =
+            (self.at((line.x, top)), self.at((line.x + line.width, top + CELL_HEIGHT)));
         // Capitals of Courier are 0.56 of the size high.
-        let line = (top + bottom) / 2.0 + 0.28 * size;
-        let (_, ratio) = self.canvas.fitted(left, line, Letters { font, size, color }, right - left, text);
+        let y = (upper + lower) / 2.0 + 0.28 * size;
+        let (_, ratio) = self.canvas.fitted(left, y, Letters { font, size, color }, right - left, &line.text);
         if ratio < LEGIBLE {
-            self.narrowed.push(super::printable(text).0.into_owned());
+            self.narrowed.push(printable(&line.text).0.into_owned());
+        }
+        if let Some(target) = line.link.as_deref().and_then(place) {
+            self.canvas.link(canvas::Area { left, top: upper, right, bottom: lower }, &target);
         }
     }
 }
@@ -332,4 +264,19 @@ fn harm(scene: &Scene) -> Vec<u32> {
         *at += parted.filter(|((from, to), (start, end))| from < end && start < to).count() as u32;
     }
     harm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_those_of_the_style_sheet() {
+        for (property, hex) in COLORS {
+            let [long, short] =
+                [format!("--rung-{property}:#{hex:06x}"), format!("--rung-{property}:#{:03x}", hex & 0xFFF)];
+            let grey = hex & 0xFF == hex >> 8 & 0xFF && hex & 0xFF == hex >> 16;
+            assert!(crate::svg::STYLE.contains(&long) || grey && crate::svg::STYLE.contains(&short), "{long}");
+        }
+    }
 }
