@@ -202,3 +202,54 @@ fn what_a_project_says_cannot_command_a_terminal() {
         assert!(found.contains("a\\x9B2Jb"), "{look}: {found}");
     }
 }
+
+#[test]
+fn pages_show_a_difference_and_never_overwrite_what_is_compared() {
+    let folder = folder("diff_html", &[("old.SLC", OLD), ("new.SLC", NEW)]);
+    let before = std::fs::read(folder.join("new.SLC")).expect("the file");
+    let shown = text(&diff(&folder, &["old.SLC", "new.SLC", "--html", "out.html"]), 1);
+    assert_eq!(shown.trim(), "out.html");
+    let page = std::fs::read_to_string(folder.join("out.html")).expect("a page");
+    assert!(
+        page.starts_with("<!DOCTYPE html>") && page.contains("default-src 'none'") && page.contains("<svg"),
+        "{page}"
+    );
+    assert!(!page.contains("http://") && !page.contains("https://") && !page.contains(" src="));
+    text(&diff(&folder, &["old.SLC", "old.SLC", "--html", "same.html"]), 0);
+    for arguments in [["old.SLC", "new.SLC", "--html", "new.SLC"], ["old.SLC", "new.SLC", "--html", "."]] {
+        let output = diff(&folder, &arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+    assert_eq!(std::fs::read(folder.join("new.SLC")).expect("the file"), before);
+    assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "x.html", "--json"]).status.code(), Some(2));
+    assert_eq!(diff(&folder, &["old.SLC", "missing.SLC", "--html", "x.html"]).status.code(), Some(3));
+    assert!(!folder.join("x.html").exists());
+}
+
+#[test]
+fn folders_give_a_folder_of_pages() {
+    let folder = folder("diff_html_folders", &[]);
+    let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
+    for side in ["a", "b"] {
+        let _ = std::fs::remove_dir_all(folder.join(side));
+        std::fs::create_dir_all(folder.join(side)).expect("a folder");
+    }
+    std::fs::copy(example("motor/motor.RSS"), folder.join("a/line.RSS")).expect("copied");
+    std::fs::copy(example("batch/batch.RSS"), folder.join("b/line.RSS")).expect("copied");
+    std::fs::copy(example("batch/batch.RSS"), folder.join("a/batch <1>.RSS")).expect("copied");
+    std::fs::copy(example("batch/batch.RSS"), folder.join("b/batch <1>.RSS")).expect("copied");
+    let filling = std::fs::read_to_string(example("filling_domore/filling.txt")).expect("the example");
+    std::fs::write(folder.join("a/filling.txt"), &filling).expect("written");
+    std::fs::write(folder.join("b/filling.txt"), filling.replace("2500", "2600")).expect("written");
+    text(&diff(&folder, &["a", "b", "--html", "pages"]), 1);
+    let list = std::fs::read_to_string(folder.join("pages/index.html")).expect("a list");
+    assert!(list.contains("a/batch &lt;1&gt;.RSS") && list.contains("equal"), "{list}");
+    let mut pages = 0;
+    for (at, _) in list.match_indices("href=\"./") {
+        let name = list[at + 8..].split('"').next().expect("a name");
+        assert!(folder.join("pages").join(name).is_file(), "{name}");
+        pages += 1;
+    }
+    // Two names of one pair lead to one page.
+    assert_eq!(pages, 4);
+}

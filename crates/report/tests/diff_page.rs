@@ -83,7 +83,7 @@ fn equal_programs_say_so() {
     let one = image(&[(2, OLD)]);
     let shown = of(&one, &one);
     assert_eq!(shown.matches("<td>equal").count(), 4);
-    assert!(!shown.contains("class=\"change") && shown.contains("6 rungs without a change"));
+    assert!(!shown.contains("class=\"change") && shown.contains("1 file without a change <span>6 rungs"));
 }
 
 /// Names, comments, symbols and values with marks, quotes and control characters are texts everywhere.

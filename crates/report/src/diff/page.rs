@@ -351,10 +351,33 @@ impl Writer<'_, '_> {
             }
             self.out.write_all(b"</table></div>\n")?;
         }
-        for chapter in chapters(*sides, difference) {
-            self.chapter(&chapter)?;
+        let all = chapters(*sides, difference);
+        for chapter in all.iter().filter(|chapter| !is_quiet(chapter)) {
+            self.chapter(chapter)?;
         }
-        Ok(())
+        self.quiet(&all)
+    }
+
+    /// The files in which nothing changed, out of the way of those in which something did.
+    fn quiet(&mut self, all: &[Chapter<'_>]) -> io::Result<()> {
+        let quiet: Vec<&Chapter<'_>> = all.iter().filter(|chapter| is_quiet(chapter)).collect();
+        let count = |chapter: &Chapter<'_>| chapter.new.as_ref().map_or(0, |part| part.rungs);
+        let total = quiet.iter().map(|chapter| count(chapter)).sum();
+        if quiet.is_empty() {
+            return Ok(());
+        }
+        let number = quiet.len();
+        let files = if number == 1 { "1 file".to_owned() } else { format!("{number} files") };
+        writeln!(
+            self.out,
+            "<details class=same><summary>{files} without a change <span>{}</span></summary>\n<ul class=quiet>",
+            rungs(total)
+        )?;
+        for chapter in quiet {
+            let title = chapter.new.as_ref().map_or("", |part| part.title.as_str());
+            writeln!(self.out, "<li>{} <span>{}</span>", escape(title), rungs(count(chapter)))?;
+        }
+        self.out.write_all(b"</ul></details>\n")
     }
 
     fn chapter(&mut self, chapter: &Chapter<'_>) -> io::Result<()> {
@@ -370,18 +393,6 @@ impl Writer<'_, '_> {
             (Some(old), None) => (&old.title, format!("gone, {}", rungs(old.rungs)), "change deleted"),
             (None, None) => return Ok(()),
         };
-        let same = |row: &Row<'_>| matches!(row, Row::Same { .. });
-        let count: usize =
-            chapter.rows.iter().map(|row| if let Row::Same { count, .. } = row { *count } else { 0 }).sum();
-        if chapter.old.is_some() && chapter.new.is_some() && chapter.rows.iter().all(same) {
-            let head = if remark.is_empty() { String::new() } else { format!(" <span>{}</span>", escape(&remark)) };
-            return writeln!(
-                self.out,
-                "<h3 class=\"part quiet {class}\">{}{head} <span>{} without a change</span></h3>",
-                escape(title),
-                rungs(count)
-            );
-        }
         write!(self.out, "<h3 class=\"part {class}\">{}", escape(title))?;
         if !remark.is_empty() {
             write!(self.out, " <span>{}</span>", escape(&remark))?;
@@ -643,6 +654,18 @@ impl Writer<'_, '_> {
             write!(self.out, " and {} more", values.len() - MOST_VALUES)?;
         }
         Ok(())
+    }
+}
+
+/// Nothing changed, not even the number.
+fn is_quiet(chapter: &Chapter<'_>) -> bool {
+    match (&chapter.old, &chapter.new) {
+        (Some(old), Some(new)) => {
+            // Code blocks are known by name: another place in the text is no other name.
+            let same_number = old.number == new.number || old.title == new.title;
+            same_number && chapter.rows.iter().all(|row| matches!(row, Row::Same { .. }))
+        }
+        _ => false,
     }
 }
 
