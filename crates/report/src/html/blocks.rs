@@ -12,7 +12,13 @@ use super::escape;
 const WIDTH: usize = 110;
 
 pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn Write) -> io::Result<()> {
+    let mut in_rungs = false;
     for block in blocks {
+        // The rungs of a file move sideways together where they are wider than the window.
+        let is_rung = matches!(block, Block::Rung(_));
+        if is_rung != std::mem::replace(&mut in_rungs, is_rung) {
+            out.write_all(if is_rung { b"<div class=rungs>\n" } else { b"</div>\n" })?;
+        }
         match block {
             Block::Heading(heading) => writeln!(out, "<h3>{}</h3>", escape(heading))?,
             Block::Pairs(pairs) => {
@@ -35,7 +41,7 @@ pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn
             }
         }
     }
-    Ok(())
+    if in_rungs { out.write_all(b"</div>\n") } else { Ok(()) }
 }
 
 pub(super) fn note(note: &Note, out: &mut dyn Write) -> io::Result<()> {
@@ -78,12 +84,13 @@ fn table(table: &Table, out: &mut dyn Write) -> io::Result<()> {
     }
     out.write_all(b"<tbody>\n")?;
     for row in &table.rows {
-        plain(table, row, out)?;
+        plain(table, row, true, out)?;
     }
     out.write_all(b"</table></div>\n")
 }
 
-fn plain(table: &Table, row: &Row, out: &mut dyn Write) -> io::Result<()> {
+/// A row; `classes`: its cells say how they are set.
+fn plain(table: &Table, row: &Row, classes: bool, out: &mut dyn Write) -> io::Result<()> {
     match &row.anchor {
         Some(anchor) => write!(out, "<tr id=\"{anchor}\">")?,
         None => out.write_all(b"<tr>")?,
@@ -91,7 +98,7 @@ fn plain(table: &Table, row: &Row, out: &mut dyn Write) -> io::Result<()> {
     // Empty cells at the end say nothing.
     let used = row.cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
     for (number, cell) in row.cells.iter().take(used).enumerate() {
-        write!(out, "<td{}>", class(table.columns.get(number)))?;
+        write!(out, "<td{}>", class(table.columns.get(number).filter(|_| classes)))?;
         text(cell, out)?;
     }
     out.write_all(b"\n")
@@ -103,7 +110,12 @@ fn grouped(table: &Table, out: &mut dyn Write) -> io::Result<()> {
     for (number, column) in table.columns.iter().enumerate() {
         write!(out, "<th class=c{number}>{}", escape(&column.title))?;
     }
-    out.write_all(b"</table></div>\n")?;
+    // Tens of thousands of cells do not say themselves how they are set.
+    out.write_all(b"</table></div>\n<div class=\"gs")?;
+    for (number, _) in table.columns.iter().enumerate().filter(|(_, column)| column.kind == ColumnKind::Fixed) {
+        write!(out, " f{number}")?;
+    }
+    out.write_all(b"\">\n")?;
     let mut rows = table.rows.iter().peekable();
     while let Some(row) = rows.next() {
         if row.kind != RowKind::Group {
@@ -133,13 +145,13 @@ fn grouped(table: &Table, out: &mut dyn Write) -> io::Result<()> {
             }
             out.write_all(b"<tbody>\n")?;
             while let Some(row) = rows.next_if(|row| row.kind == RowKind::Plain) {
-                plain(table, row, out)?;
+                plain(table, row, false, out)?;
             }
             out.write_all(b"</table>")?;
         }
         out.write_all(b"</div>\n")?;
     }
-    Ok(())
+    out.write_all(b"</div>\n")
 }
 
 fn tree(items: &[TreeItem], out: &mut dyn Write) -> io::Result<()> {
