@@ -34,6 +34,11 @@ const CHORES: &[Chore] = &[
         help: "run every fuzz target on the same few thousand inputs (`--seconds N`: on new ones for that long)",
         run: fuzz,
     },
+    Chore {
+        name: "setup",
+        help: "install what tests need beside Rust (Chromium and its driver), where apt-get is",
+        run: |_| setup(),
+    },
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
     Chore {
         name: "nightly",
@@ -91,7 +96,54 @@ fn doc() -> Outcome {
     run(command.env("RUSTDOCFLAGS", "-D warnings"))
 }
 
+/// Programs that tests drive, and the Debian packages that bring them: names differ among systems, so
+/// that one of each line is enough.
+const NEEDED: [(&[&str], &[&str]); 2] = [
+    (&["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"], &["chromium", "chromium-browser"]),
+    (&["chromedriver"], &["chromium-driver", "chromium-chromedriver"]),
+];
+
+/// Installs what is missing. Tests that need it fail plainly without it, or say that they are skipped with
+/// `RUNGS_NO_BROWSER=1`; so this is no failure where packages cannot be installed.
+fn setup() -> Outcome {
+    let missing: Vec<_> = NEEDED.iter().filter(|(programs, _)| !programs.iter().any(|name| on_path(name))).collect();
+    if missing.is_empty() || std::env::var_os("RUNGS_NO_BROWSER").is_some_and(|value| value == "1") {
+        return Ok(());
+    }
+    let names: Vec<&str> = missing.iter().filter_map(|(programs, _)| programs.first().copied()).collect();
+    if !on_path("apt-get") {
+        println!("tests of pages need {}: install them, or set RUNGS_NO_BROWSER=1", names.join(" and "));
+        return Ok(());
+    }
+    let apt = |arguments: &[&str]| {
+        let root = Command::new("id").arg("-u").output().is_ok_and(|it| it.stdout.trim_ascii() == b"0");
+        let mut command = Command::new(if root { "apt-get" } else { "sudo" });
+        if !root {
+            command.args(["-n", "apt-get"]);
+        }
+        run(command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive"))
+    };
+    println!("installing {}", names.join(", "));
+    // Package lists can be old and still good enough.
+    if let Err(why) = apt(&["update", "-q"]) {
+        println!("{why}");
+    }
+    for (programs, packages) in missing {
+        let install = |package: &&&str| apt(&["install", "-qy", "--no-install-recommends", package]).is_ok();
+        if packages.iter().find(install).is_none() {
+            println!("{} could not be installed; tests of pages need it", programs.first().unwrap_or(&""));
+        }
+    }
+    Ok(())
+}
+
+fn on_path(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
+}
+
 fn test() -> Outcome {
+    setup()?;
     cargo(&["test", "--workspace", "--no-fail-fast"])
 }
 
