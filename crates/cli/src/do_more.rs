@@ -1,92 +1,10 @@
-//! Do-more programs for scenarios and runs: text to a machine, and the machine as the runner of scenarios
-//! drives it.
+//! Do-more programs for scenarios and runs: text to a machine.
 
-use std::time::Duration;
-
-use domore::engine::{Handle, Machine, Mode, Options, Program, Value};
-use domore::memory::Kind;
+use domore::engine::{Machine, Options, Program};
 use domore::program::CodeKind;
 use ladder::Severity;
-use sim::scenario::{Controller, Foreign, Routine, RunError, Spot, Stop};
+use sim::scenario::{Foreign, Routine, RunError, Spot};
 use sim::{Approximation, Refusal};
-
-/// A Do-more machine as scenarios see it.
-pub struct DoMore(pub Machine);
-
-impl Controller for DoMore {
-    fn enter_program(&mut self) {
-        self.0.enter_program();
-    }
-
-    fn enter_run(&mut self) {
-        self.0.enter_run();
-    }
-
-    fn scan(&mut self, dt: Duration) {
-        self.0.scan(dt);
-    }
-
-    fn scans(&self) -> u64 {
-        self.0.scans()
-    }
-
-    fn is_executing(&self) -> bool {
-        self.0.mode() == Mode::Run
-    }
-
-    fn now(&self) -> Duration {
-        self.0.now()
-    }
-
-    fn instructions(&self) -> u64 {
-        self.0.instructions()
-    }
-
-    fn stopped(&self) -> Option<Stop> {
-        self.0.fault().map(|fault| Stop { code: 0, text: fault.to_string() })
-    }
-
-    fn read(&self, address: &str) -> Result<ladder::Value, String> {
-        self.0.handle(address).map(|handle| self.value(handle)).map_err(|error| error.why)
-    }
-
-    fn write(&mut self, address: &str, value: &ladder::Value) -> Result<(), String> {
-        self.0.set(address, &plain(value)?).map_err(|error| error.why)
-    }
-}
-
-impl DoMore {
-    /// Writes a value at a place.
-    ///
-    /// # Errors
-    /// It is read-only, or of another sort.
-    pub fn put(&mut self, handle: Handle, value: &ladder::Value) -> Result<(), String> {
-        self.0.set_value(handle, &plain(value)?).map_err(|error| error.why)
-    }
-
-    /// The value at a place.
-    pub fn value(&self, handle: Handle) -> ladder::Value {
-        match (self.0.value(handle), handle.kind()) {
-            (Value::Bit(on), _) => ladder::Value::Bit(on),
-            (Value::Integer(number), Kind::I16) => ladder::Value::Word(number as i16),
-            // Unsigned words and bytes count from 0: they are shown and compared as whole numbers.
-            (Value::Integer(number), _) => ladder::Value::Long(number as i32),
-            (Value::Real(number), _) => ladder::Value::Float(number),
-            (Value::Text(text), _) => ladder::Value::Text(text),
-        }
-    }
-}
-
-fn plain(value: &ladder::Value) -> Result<Value, String> {
-    Ok(match value {
-        ladder::Value::Bit(on) => Value::Bit(*on),
-        ladder::Value::Word(word) => Value::Integer((*word).into()),
-        ladder::Value::Long(long) => Value::Integer((*long).into()),
-        ladder::Value::Float(number) => Value::Real(*number),
-        ladder::Value::Text(text) => Value::Text(text.clone()),
-        _ => return Err("no such value in Do-more".to_owned()),
-    })
-}
 
 /// What is followed where a person names a timer or counter: its members; else the name itself.
 pub fn members(text: &str) -> Vec<String> {
@@ -103,7 +21,7 @@ pub fn members(text: &str) -> Vec<String> {
 ///
 /// # Errors
 /// A line for everything that keeps it from running.
-pub fn machine_of(text: &str, options: &Options) -> Result<(DoMore, Vec<Approximation>), Vec<String>> {
+pub fn machine_of(text: &str, options: &Options) -> Result<(Machine, Vec<Approximation>), Vec<String>> {
     let reading = domore::text::read(text).map_err(|error| vec![error.to_string()])?;
     let errors = reading.diagnostics.iter().filter(|diagnostic| diagnostic.problem.severity() == Severity::Error);
     let errors: Vec<String> = errors.map(ToString::to_string).collect();
@@ -114,7 +32,7 @@ pub fn machine_of(text: &str, options: &Options) -> Result<(DoMore, Vec<Approxim
         .map_err(|refusals| refusals.iter().map(ToString::to_string).collect::<Vec<_>>())?;
     let named = program.approximations().iter();
     let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
-    Ok((DoMore(Machine::new(program)), approximations))
+    Ok((Machine::new(program), approximations))
 }
 
 /// A machine for the text of a program file.
@@ -185,7 +103,7 @@ fn machine(project: &domore::Project, options: &Options) -> Result<Foreign, RunE
     })?;
     let named = program.approximations().iter();
     let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
-    Ok(Foreign { controller: Box::new(DoMore(Machine::new(program))), approximations })
+    Ok(Foreign { controller: Box::new(Machine::new(program)), approximations })
 }
 
 fn at(line: u32, message: String) -> RunError {

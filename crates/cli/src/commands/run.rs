@@ -13,7 +13,7 @@ use super::test::reasons;
 use super::trace::{Column, Row, RungColumn, parts, writer};
 use super::{ImageChoice, open};
 use crate::args::RunArguments;
-use crate::do_more::{self, DoMore};
+use crate::do_more;
 use crate::output::{Error, Outcome};
 
 /// More scans than anyone reads; a slip of units otherwise fills a disk.
@@ -116,19 +116,18 @@ fn run_do_more(arguments: &RunArguments, text: &str) -> Result<Outcome, Error> {
     for line in reasons(&approximations) {
         eprintln!("{name}: approximate: {line}");
     }
-    let find = |text: &str| match machine.0.handle(text) {
+    let find = |text: &str| match machine.handle(text) {
         Ok(handle) => Ok(handle),
         Err(error) => Err(Error::Use(error.to_string())),
     };
     let sets = arguments.set.iter().map(|text| Set::read(text, find)).collect::<Result<Vec<_>, _>>()?;
     let approximations = approximations.iter().map(ToString::to_string).collect();
-    let columns = |machine: &DoMore| {
+    let columns = |machine: &domore::engine::Machine| {
         let mut columns = Vec::new();
         for text in &arguments.watch {
             for part in do_more::members(text) {
-                let place =
-                    machine.0.handle(&part).map_err(|why| Error::Use(format!("--watch {text}: {}", why.why)))?;
-                columns.push((Column { heading: part, sample: machine.value(place) }, place));
+                let place = machine.handle(&part).map_err(|why| Error::Use(format!("--watch {text}: {}", why.why)))?;
+                columns.push((Column { heading: part, sample: machine.shown(place) }, place));
             }
         }
         Ok(columns)
@@ -161,19 +160,19 @@ impl Followed for Machine {
     }
 }
 
-impl Followed for DoMore {
+impl Followed for domore::engine::Machine {
     type Place = domore::engine::Handle;
 
     fn value(&self, place: &Self::Place) -> Option<Value> {
-        Some(DoMore::value(self, *place))
+        Some(self.shown(*place))
     }
 
     fn put(&mut self, place: &Self::Place, value: &Value) -> Result<(), String> {
-        self.put(*place, value)
+        self.put_shown(*place, value)
     }
 
     fn scan_recorded(&mut self, dt: Duration, _: &mut Recorder) {
-        self.0.scan(dt);
+        self.scan(dt);
     }
 }
 

@@ -27,6 +27,7 @@
 mod boxes;
 mod clock;
 mod compile;
+mod controller;
 mod machine;
 mod op;
 mod operand;
