@@ -25,7 +25,7 @@ use ladder::{Address, Documentation, Family, FileType, Image, Mnemonic, Operand,
 
 use crate::budget::Budget;
 use crate::location::Location;
-use crate::space::{Area, Key};
+use crate::space::{Area, Key, Spaces};
 pub(crate) use collect::Use;
 use collect::{Collected, Spelled, collect};
 use index::Index;
@@ -319,6 +319,16 @@ impl<'a> CrossReference<'a> {
     /// Limits of this cross reference.
     pub fn notes(&self) -> &[Note] {
         &self.data.notes
+    }
+
+    /// Every stretch of data an instruction touches.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = (Location, &Span)> {
+        self.data.spans.iter().filter_map(|span| Some((self.data.uses.get(span.by)?.location, span)))
+    }
+
+    /// The files the stretches lie in.
+    pub(crate) fn spaces(&self) -> &Spaces<'a> {
+        &self.data.spaces
     }
 
     /// The value stored at an address.

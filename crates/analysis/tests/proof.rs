@@ -265,3 +265,120 @@ fn no_scan_compares_nothing() {
     let text = report.to_string();
     assert!(text.contains("nothing compared") && !text.contains("100.0 %") && !text.contains("0 of 0"), "{text}");
 }
+
+#[test]
+fn flow_that_leads_nowhere_is_no_missing_rung() {
+    let family = Some(program(&BASE).processor.family);
+    let rungs = |texts: &[&str]| -> Vec<ladder::Rung> {
+        texts.iter().map(|text| convert::slc::rung::parse_rung(text, family).expect("a rung")).collect()
+    };
+    for (main, sub) in [
+        (vec!["XIC I:0.0/0 JSR 3"], vec![]),
+        (vec!["XIC I:0.0/0 JSR 3", "XIC I:0.0/1 JSR 3"], vec![]),
+        (vec!["JSR 3"], vec!["XIC I:0.0/0 OTE B3:0/1", "XIC I:0.0/1 RET"]),
+        (vec!["XIC I:0.0/2 JSR 3"], vec!["SBR", "XIC I:0.0/0 OTE B3:0/1", "XIC I:0.0/1 RET"]),
+        (vec!["XIC I:0.0/0 OTE B3:0/1", "XIC I:0.0/1 TND"], vec![]),
+        (vec!["XIC I:0.0/0 JMP 1", "LBL 1 XIC I:0.0/1 OTE B3:0/1"], vec![]),
+    ] {
+        let mut image = program(&[&main[..], &BASE].concat());
+        let end = image.program_files.iter().find(|file| file.number == 2).and_then(|file| file.rungs.last()).cloned();
+        let mut file = ladder::ProgramFile { number: 3, ..image.program_files.last().expect("file 2").clone() };
+        file.rungs = rungs(&sub);
+        file.rungs.extend(end);
+        image.program_files.push(file);
+        let migration = convert::migrate::migrate(&image, &[], &Default::default()).expect("it migrates");
+        let map: Vec<_> = migrated(&image).1;
+        let fates = analysis::proof::fates(&migration.project).expect("marks");
+        let report = prove_domore(&image, &migration.project, &map, Some(&fates), &options(2_000));
+        assert!(report.missing_rungs.is_empty(), "{main:?} {sub:?}: {:?}", report.missing_rungs);
+        assert_eq!(report.verdict(), Verdict::NoDifference, "{main:?} {sub:?}: {report}");
+    }
+}
+
+/// The first contact of the rungs converted from `2:rung` turned over.
+fn inverted(project: &domore::Project, rung: u32) -> domore::Project {
+    let mut project = project.clone();
+    let mark = format!("SLC 2:{rung} ");
+    let blocks = project.parts.iter_mut().filter_map(|part| match part {
+        domore::Part::Code(block) => Some(block),
+        _ => None,
+    });
+    for found in blocks.flat_map(|block| &mut block.rungs) {
+        let marked = found.comment.iter().flat_map(|comment| &comment.lines).any(|line| line.starts_with(&mark));
+        if let Some(first) = found.instructions.first_mut().filter(|_| marked) {
+            let name = if first.mnemonic == "STR" { "STRN" } else { "STR" };
+            first.mnemonic = name.to_owned();
+        }
+    }
+    project
+}
+
+#[test]
+fn what_a_person_has_to_write_taints_no_more_than_depends_on_it() {
+    let rungs = [
+        "XIC I:0.0/0 OTE B3:0/0",   // 0: left to a person
+        "XIC B3:0/0 OTE B3:0/1",    // 1: depends on it
+        "XIC I:0.0/1 OTE B3:0/2",   // 2: another bit of the same word
+        "XIC B3:0/2 MOV N7:0 N7:1", // 3
+        "XIC B3:0/1 JSR 3",         // 4: what it calls depends on it
+        "XIC I:0.0/3 OTE B3:0/5",   // 5
+    ];
+    let mut image = program(&rungs);
+    let family = Some(image.processor.family);
+    let mut file = ladder::ProgramFile { number: 3, ..image.program_files.last().expect("file 2").clone() };
+    let end = file.rungs.pop().expect("an END rung");
+    file.rungs = vec![convert::slc::rung::parse_rung("XIC I:0.0/2 OTE B3:0/4", family).expect("a rung"), end];
+    image.program_files.push(file);
+    let (project, map) = migrated(&image);
+    let mut fates = analysis::proof::fates(&project).expect("marks");
+    let first = fates.iter_mut().find(|fate| (fate.file, fate.rung) == (2, 0)).expect("a mark");
+    first.person = Some("because".to_owned());
+    let prove = |other: &domore::Project| prove_domore(&image, other, &map, Some(&fates), &options(5_000));
+    let report = prove(&project);
+    assert_eq!((report.verdict(), report.not_compared), (Verdict::NotComparable, 1), "{report}");
+    assert!(report.incomparable.is_empty() && report.scans == 5_000, "{report}");
+    // What depends on the rung can be anything; what does not is compared as ever, bits of one word apart.
+    for (rung, differs) in [(0, false), (1, false), (2, true), (3, true), (4, false), (5, true)] {
+        let report = prove(&inverted(&project, rung));
+        assert_eq!(report.found.is_some(), differs, "rung {rung}: {report}");
+        assert_ne!(report.verdict(), Verdict::NoDifference, "rung {rung}");
+    }
+}
+
+#[test]
+fn rows_of_a_map_that_overlap_are_told_with_both() {
+    let image = program(&BASE);
+    let (project, map) = migrated(&image);
+    let refused = |map: &[Mapping]| analysis::proof::refused_domore(&image, &project, map, &options(1));
+    assert_eq!(refused(&map), []);
+    let at = |original: &str| map.iter().position(|row| row.original == original).expect("a row");
+    let (bits, words) = (at("B3:0"), at("N7:0"));
+    let row = |original: &str, words: u32, other: &str| Mapping {
+        original: original.to_owned(),
+        words,
+        other: other.to_owned(),
+    };
+    let found = |changed: Vec<Mapping>| {
+        let found = refused(&changed);
+        assert_eq!(found.len(), 1, "{found:?}");
+        (found[0].row, found[0].with.unwrap_or_else(|| panic!("{found:?}")), found[0].why.clone())
+    };
+    // The same place twice: bits on words, and a word twice.
+    let mut meets = map.clone();
+    meets[words].other = map[at("T4:0")].other.clone();
+    let (later, earlier, why) = found(meets);
+    assert_eq!((earlier.min(later), earlier.max(later)), (words.min(at("T4:0")), words.max(at("T4:0"))), "{why}");
+    assert!(why.contains("meet in the other program"), "{why}");
+    // The same data twice.
+    let mut twice = map.clone();
+    twice.push(row("B3:0", 1, "C512"));
+    assert_eq!(found(twice), (map.len(), bits, "B3:0 and B3:0 are in part the same data".to_owned()));
+    // A point may lie in its word or apart from it, but not in another's, and not twice.
+    let point = |other: &str| [&map[..], &[row("I:0.0/3", 0, other)]].concat();
+    assert_eq!(refused(&point("X3")), []);
+    assert_eq!(refused(&point("X99")), []);
+    assert_eq!(found(point(&map[bits].other)).1, bits);
+    let mut both = point("X99");
+    both.push(row("I:0.0/3", 0, "X98"));
+    assert_eq!(found(both).1, map.len());
+}

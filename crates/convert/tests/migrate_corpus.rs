@@ -172,7 +172,7 @@ fn a_map_that_is_passed_back_changes_nothing() {
 
 /// Every word Designer's exports or an import on hardware show: instructions that are no contacts.
 const SHOWN: &str = "NOT ANDSTR ORSTR DUPBOOL POPBOOL OUT SET RST RSTR PD ND TMR TMRDOWN ONDTMR OFFDTMR CNT CNTDN UDC MOVE MATH COPY \
-    INIT MEMCOPY STRCLEAR SCALE CLAMP FILTER FLASHER DEBOUNCE TIMEDOUT INC CALL RET RUN SUSPEND JMP SG FOR NEXT REPEAT UNTIL NOP";
+    INIT MEMCOPY STRCLEAR STRPRINT SCALE CLAMP FILTER FLASHER DEBOUNCE TIMEDOUT INC CALL RET RUN SUSPEND JMP SG FOR NEXT REPEAT UNTIL NOP";
 
 /// Endings of STR, AND and OR in exports.
 const TESTS: [&str; 11] = ["", "N", "PD", "ND", "DLT", "E", "NE", "GT", "GE", "LT", "LE"];

@@ -444,6 +444,18 @@ impl fmt::Display for Operand {
 /// # Errors
 /// The text with a quote that is never closed.
 pub fn columns(table: &str) -> Result<Vec<String>, AddressError> {
+    let plain = |column: &str| match column.starts_with('"') {
+        true => unquote(column).unwrap_or_default(),
+        false => column.to_owned(),
+    };
+    Ok(written_columns(table)?.into_iter().map(plain).collect())
+}
+
+/// As [`columns`], quotes left on.
+///
+/// # Errors
+/// As [`columns`].
+pub fn written_columns(table: &str) -> Result<Vec<&str>, AddressError> {
     let mut found = Vec::new();
     let mut rest = table.trim_start();
     while !rest.is_empty() {
@@ -454,7 +466,10 @@ pub fn columns(table: &str) -> Result<Vec<String>, AddressError> {
         };
         let end = if rest.starts_with('"') { quoted_end(rest).ok_or_else(wrong)? } else { unbroken_end(rest) };
         let (column, behind) = rest.split_at(end);
-        found.push(if column.starts_with('"') { unquote(column).ok_or_else(wrong)? } else { column.to_owned() });
+        if column.starts_with('"') && unquote(column).is_none() {
+            return Err(wrong());
+        }
+        found.push(column);
         rest = behind.trim_start();
     }
     Ok(found)

@@ -50,7 +50,7 @@ mod trace;
 pub mod walker;
 
 pub use access::{AccessError, Kind};
-pub use choices::Choices;
+pub use choices::{Choice, Choices};
 pub use fault::{FaultClass, MajorFault};
 pub use machine::{Machine, Mode, ScanReport};
 pub use options::{Options, Unsupported, inline_image};

@@ -605,6 +605,7 @@ pub(crate) fn compare<B: Side>(both: &Both<B>, pairs: &Pairs, buffers: &mut [Vec
         (Some(_), Some(_)) => pairs.output_on(&both.b).map(Difference::Value),
         // The inputs left the conditions under which the programs are the same: nothing follows from it.
         (Some(_), None) if both.a.machine.fault().is_some_and(|fault| pairs.is_stated(fault)) => None,
+        (Some(_), None) | (None, Some(_)) if pairs.stops_unknown => None,
         (Some(why), None) => Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code))),
         (None, Some(why)) => Some(Difference::OtherStopped(why)),
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use domore::instruction::Effect;
-use ladder::Image;
+use ladder::{Image, Instruction, Rung};
 
 use super::RungFate;
 
@@ -53,7 +53,30 @@ pub(crate) fn emptied(image: &Image, project: &domore::Project, persons: &BTreeS
             other.insert(place);
         }
     }
-    output.intersection(&other).copied().filter(empty).collect()
+    output.intersection(&other).copied().filter(empty).filter(|place| !leads_nowhere(image, *place)).collect()
+}
+
+/// The only outputs of a rung leave or call, and there is nothing they could keep from running or let run: a
+/// return at the end of its file, a jump to the next rung, a call of a file without rungs.
+fn leads_nowhere(image: &Image, (number, rung): (u16, u32)) -> bool {
+    let rungs = |number: u16| image.program_file(number).map(|file| file.rungs.as_slice());
+    let own = rungs(number).unwrap_or_default();
+    let bare = |rungs: &[Rung]| rungs.iter().all(|rung| rung.is_end() || rung.series.is_empty());
+    let behind = own.get(rung as usize + 1..).unwrap_or_default();
+    let lands = |label: u16| {
+        let is = |it: &Instruction| it.mnemonic == "LBL" && super::taint::label(it) == Some(label);
+        behind.first().is_some_and(|next| next.instructions().any(is))
+    };
+    let nothing = |it: &Instruction| match it.mnemonic.name() {
+        Some("RET" | "TND") => bare(behind),
+        Some("JMP") => super::taint::label(it).is_some_and(lands),
+        Some("JSR") => super::taint::called(it).and_then(rungs).is_some_and(bare),
+        name => {
+            let known = name.and_then(instr::by_mnemonic);
+            known.is_some_and(|known| known.forms.iter().all(|form| form.position == instr::Position::Input))
+        }
+    };
+    own.get(rung as usize).is_some_and(|rung| rung.instructions().all(nothing))
 }
 
 /// Flow that a conversion expresses by where the rungs stand. A rung of nothing else, without a condition,

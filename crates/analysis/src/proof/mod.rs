@@ -38,7 +38,7 @@ use scenario::Preset;
 use solve::Solver;
 
 pub use campaign::Difference;
-pub use check::{refused_domore, refused_slc};
+pub use check::{Refused, refused_domore, refused_slc};
 pub use fates::fates;
 pub use goals::{Goal, GoalKind};
 pub use pairs::{Mapping, Mismatch};
@@ -131,7 +131,10 @@ pub fn prove_domore(
     let program = program.map_err(|refusals| {
         refusals.iter().map(|refusal| format!("the other program cannot be run: {refusal}")).collect::<Vec<_>>()
     });
-    let (a, program) = match (slc(original, "original", options), program) {
+    // What lies behind a file is another file there and here: an index beyond its file is outside the conditions a
+    // conversion states, and has to stop the original so that it is noticed.
+    let inside = Options { choices: options.choices.with(sim::Choice::IndirectStaysInFile), ..options.clone() };
+    let (a, program) = match (slc(original, "original", &inside), program) {
         (Ok(a), Ok(program)) => (a, program),
         (a, b) => return Report::impossible(a.err().into_iter().chain(b.err()).flatten().collect(), options),
     };
@@ -188,14 +191,16 @@ fn prove<B: Side>(
         report.notes.push("the original holds forces: they were left out".to_owned());
     }
     let persons = rungs(image, fates, &mut report);
-    let tainted = taint::tainted(image, &a, &persons).unwrap_or_else(|| {
+    let taint = taint::tainted(image, &xref, &a, &persons).unwrap_or_else(|| {
         report.incomparable.push("which rungs run at all depends on rungs that were left to a person".to_owned());
-        (0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX)).collect()
+        let words = 0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX);
+        taint::Taint { bits: words.map(|word| (word, u16::MAX)).collect(), rungs: persons.clone(), stops: true }
     });
-    report.not_compared = tainted.len();
-    let mut pairs = Pairs::new(image, &xref, &a, &b, map, &tainted);
+    report.not_compared = taint.bits.len();
+    let mut pairs = Pairs::new(image, &xref, &a, &b, map, &taint.bits);
     let stated = fates.unwrap_or_default().iter().filter(|fate| !fate.conditions.is_empty());
-    pairs.persons.clone_from(&persons);
+    pairs.persons = taint.rungs;
+    pairs.stops_unknown = taint.stops;
     pairs.conditions = stated.map(|fate| (fate.file, fate.rung, fate.conditions.clone())).collect();
     let inputs = Inputs::new(image, &xref, &a, &b, &pairs);
     report.take_map(&pairs, &inputs.left_out);

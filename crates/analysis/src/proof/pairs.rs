@@ -115,8 +115,11 @@ pub(crate) struct Pairs {
     outputs: Vec<(u32, u32, u32)>,
     /// Program file, rung and conditions: a stop there that a condition names is no difference.
     pub(crate) conditions: Vec<(u16, u32, Vec<String>)>,
-    /// Rungs left to a person: what they do in the original is not compared, a stop included.
+    /// Rungs left to a person, and those whose effect depends on them: what they do in the original is not compared,
+    /// a stop included.
     pub(crate) persons: BTreeSet<(u16, u32)>,
+    /// Data that is not compared can stop one of the programs.
+    pub(crate) stops_unknown: bool,
     /// Addresses the program uses that the map does not place, with why.
     pub(crate) unmapped: Vec<(String, String)>,
     /// Rows of the map that could not be used, with why.
@@ -143,14 +146,14 @@ pub struct Mismatch {
 const STATUS: [u16; 12] = [0, 4, 5, 13, 14, 24, 37, 38, 39, 40, 41, 42];
 
 impl Pairs {
-    /// Finds all places. `tainted` are words of the original, by number, that must not be compared.
+    /// Finds all places. `tainted` are bits of words of the original, by number, that must not be compared.
     pub(crate) fn new<B: Side>(
         image: &Image,
         xref: &CrossReference<'_>,
         a: &Slc,
         b: &B,
         mappings: &[Mapping],
-        tainted: &BTreeSet<u32>,
+        tainted: &BTreeMap<u32, u16>,
     ) -> Pairs {
         let mut pairs = Pairs {
             spans: Vec::new(),
@@ -161,6 +164,7 @@ impl Pairs {
             outputs: Vec::new(),
             conditions: Vec::new(),
             persons: BTreeSet::new(),
+            stops_unknown: false,
             unmapped: Vec::new(),
             unusable: Vec::new(),
         };
@@ -184,7 +188,8 @@ impl Pairs {
                         mask = 0;
                     }
                 }
-                if mask != 0 && !tainted.contains(&(at >> 4)) {
+                mask &= !tainted.get(&(at >> 4)).copied().unwrap_or(0);
+                if mask != 0 {
                     pairs.words.push(Word { a: at, b: span.b + 16 * offset, mask, span: index as u32 });
                 }
                 if span.file_type == FileType::O {
@@ -192,8 +197,9 @@ impl Pairs {
                 }
             }
         }
-        pairs.points.retain(|point| !tainted.contains(&(point.a >> 4)));
-        pairs.texts.retain(|text| !(text.0 >> 4..(text.0 >> 4) + 42).any(|word| tainted.contains(&word)));
+        let is_tainted = |at: u32| tainted.get(&(at >> 4)).is_some_and(|mask| mask >> (at & 15) & 1 != 0);
+        pairs.points.retain(|point| !is_tainted(point.a));
+        pairs.texts.retain(|text| tainted.range(text.0 >> 4..(text.0 >> 4) + 42).next().is_none());
         pairs.join();
         pairs.find_unmapped(xref, a);
         pairs
@@ -220,18 +226,10 @@ impl Pairs {
             }
             return Ok(());
         }
-        let size = match first.file_type.has_slots() {
-            true => 1,
-            false => {
-                let number = first.file.number().unwrap_or(0);
-                let file = image.data_file(first.file_type, number);
-                let file = file.or_else(|| image.function_files.iter().find(|file| file.file_type == first.file_type));
-                file.map_or_else(|| first.file_type.words_per_element().unwrap_or(1), |file| file.words_per_element)
-            }
-        };
+        let size = words_of(image, &first);
         if other.1 == Kind::Text {
             let element = |text: &str, index: u32| advance(text, index);
-            for index in 0..mapping.words / u32::from(size.max(1)) {
+            for index in 0..mapping.words / size {
                 let names = (element(&mapping.original, index), element(&mapping.other, index));
                 let (Some(own), Some(other)) = names else { continue };
                 let (Ok(x), Ok(y)) = (a.place(&own), b.place(&other)) else { continue };
@@ -244,7 +242,7 @@ impl Pairs {
         }
         self.spans.push(Span {
             file_type: first.file_type,
-            size: u32::from(size.max(1)),
+            size,
             first,
             other: mapping.other.clone(),
             a: at.0,
@@ -402,6 +400,22 @@ impl Pairs {
             })
         })
     }
+}
+
+/// Words of an element of the file an address lies in, at least 1.
+fn words_of(image: &Image, address: &Address) -> u32 {
+    if address.file_type.has_slots() {
+        return 1;
+    }
+    let file = image.data_file(address.file_type, address.file.number().unwrap_or(0));
+    let file = file.or_else(|| image.function_files.iter().find(|file| file.file_type == address.file_type));
+    let words = file.map_or_else(|| address.file_type.words_per_element().unwrap_or(1), |file| file.words_per_element);
+    u32::from(words.max(1))
+}
+
+/// As `words_of`, of an address as text.
+pub(crate) fn words_per_element(image: &Image, address: &str) -> u32 {
+    Address::parse(address).map_or(1, |address| words_of(image, &address))
 }
 
 fn mismatch<B: Side>(span: &Span, word: &Word, differs: u16, a: &Slc, b: &B) -> Option<Mismatch> {

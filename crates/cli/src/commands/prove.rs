@@ -4,8 +4,8 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use analysis::proof::{
-    Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Report, Verdict, fates, prove_domore, prove_slc,
-    refused_domore, refused_slc,
+    Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Refused, Report, Verdict, fates, prove_domore,
+    prove_slc, refused_domore, refused_slc,
 };
 use convert::AnyProject;
 use convert::migrate::map_file::{self, MapRow};
@@ -134,9 +134,10 @@ fn refuse(
         AnyProject::Rslogix(other) => refused_slc(original, &other.main, map, options),
         AnyProject::Domore(document) => refused_domore(original, &document.project, map, options),
     };
-    let line = |(index, why): &(usize, String)| {
-        let row = numbers.get(*index).copied().unwrap_or(0);
-        format!("{}: address map, row {row}: {why}", path.display())
+    let number = |index: usize| numbers.get(index).copied().unwrap_or(0);
+    let line = |found: &Refused| {
+        let with = found.with.map(|with| format!(" (row {})", number(with))).unwrap_or_default();
+        format!("{}: address map, row {}: {}{with}", path.display(), number(found.row), found.why)
     };
     match refused.is_empty() {
         true => Ok(()),

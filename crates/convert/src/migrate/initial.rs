@@ -25,6 +25,13 @@ pub struct Initial {
     pub value: String,
 }
 
+impl Initial {
+    /// Whether a text can have it: infinity and what is no number have no constant.
+    pub(super) fn is_written(&self) -> bool {
+        !matches!(self.value.as_str(), "NaN" | "inf" | "-inf") || self.domore.starts_with("SL")
+    }
+}
+
 /// All values that are not zero, in the order of the allocation, inputs left out.
 pub fn values(image: &Image, facts: &Facts, places: &Places) -> Vec<Initial> {
     let mut found = Vec::new();
@@ -41,19 +48,21 @@ pub fn values(image: &Image, facts: &Facts, places: &Places) -> Vec<Initial> {
             let word = |offset: u32| words.get((index + offset) as usize).copied().unwrap_or(0);
             let slc = address.to_string();
             let domore = |places: &Places| match span.at.block {
-                Block::D | Block::R => {
+                Block::D | Block::R | Block::Sl => {
                     places.element(span.file_type, span.file, span.first_word + index).map(|e| e.to_string())
                 }
                 _ => places.word(span.file_type, span.file, span.first_word + index),
             };
             let value = match span.at.block {
                 Block::D | Block::R if index % 2 != 0 => continue,
-                Block::Sl | Block::T | Block::X | Block::Wx => continue,
+                Block::T | Block::X | Block::Wx => continue,
+                Block::Sl if index % 42 != 0 => continue,
+                Block::Sl => literal(words.get(index as usize..).unwrap_or_default()),
                 Block::D => (long(word(0), word(1)) as i32).to_string(),
                 Block::R => super::operand::float(f32::from_bits(long(word(0), word(1)))),
                 _ => (word(0) as i16).to_string(),
             };
-            if matches!(value.as_str(), "0" | "0.0") {
+            if matches!(value.as_str(), "0" | "0.0" | "") {
                 continue;
             }
             match domore(places) {
@@ -74,6 +83,17 @@ fn points(places: &Places, span: &Span, index: u32, word: u16) -> Vec<Initial> {
         Some(Initial { slc, domore, value: "1".to_owned() })
     })
     .collect()
+}
+
+/// The characters of a string element as a literal has them: what could end it or begin an escape by its number.
+fn literal(words: &[u16]) -> String {
+    let length = usize::from(words.first().copied().unwrap_or(0)).min(82);
+    let characters = words.iter().skip(1).take(41).flat_map(|word| word.to_be_bytes()).take(length);
+    let spelled = characters.map(|byte| match byte {
+        b'"' | b'$' | ..b' ' | 0x7F.. => format!("${byte:02X}"),
+        byte => char::from(byte).to_string(),
+    });
+    spelled.collect()
 }
 
 fn long(low: u16, high: u16) -> u32 {
@@ -101,13 +121,17 @@ pub(super) fn rungs(values: &[Initial], done: &str) -> Vec<Rung> {
     let mut rows: Vec<(String, String, String)> = Vec::new();
     let mut moves: Vec<Instruction> = Vec::new();
     let mut row: Option<(Element, Element, String)> = None;
-    for initial in values {
+    for initial in values.iter().filter(|initial| initial.is_written()) {
         let element = element(&initial.domore);
         match (element, &mut row) {
             (None, _) if initial.domore.contains(':') => {
                 moves.push(Instruction::new("MOVE", [initial.value.clone(), initial.domore.clone()]));
             }
             (None, _) => moves.push(Instruction::new("SET", [initial.domore.clone()])),
+            (Some(Element { block: Block::Sl, .. }), _) => {
+                let text = domore::address::quote(&format!("\"{}\"", initial.value));
+                moves.push(Instruction::new("STRPRINT", [initial.domore.clone(), "0x4".to_owned(), text]));
+            }
             (Some(at), Some((_, last, value)))
                 if last.block == at.block && last.number + 1 == at.number && *value == initial.value =>
             {

@@ -162,7 +162,15 @@ pub fn migrate(image: &Image, map: &[MapRow], options: &Options) -> Result<Migra
     let initial = initial::values(image, &facts, &context.places);
     finish(&mut context, &mut blocks, &initial, &mut rungs);
     rungs.sort_by_key(|rung| (rung.file, rung.rung));
-    let notes = notes(image, &context);
+    let mut notes = notes(image, &context);
+    let unwritten: Vec<&str> = initial.iter().filter(|row| !row.is_written()).map(|row| row.slc.as_str()).collect();
+    if !unwritten.is_empty() {
+        let text = format!(
+            "infinity and what is no number cannot be written as a constant: {} start with 0.0 instead",
+            unwritten.join(", ")
+        );
+        notes.push(Note::new(Mark::Rounding, text));
+    }
     let documented = docs::documented(&context, &wishes, blocks.iter().map(|block| block.name.as_str()))?;
     let map = map_file::rows(image, &context, &documented);
     let project = project::project(&context, blocks, &documented);

@@ -14,6 +14,9 @@ const MILLISECOND: u64 = 1_000_000;
 /// A reset that waits for its box to be processed.
 const PENDING: u64 = u64::MAX;
 
+/// Characters the longest string holds.
+const LONGEST_TEXT: usize = 256;
+
 /// Flags stand behind .Acc.
 const FLAGS: u32 = 32;
 
@@ -209,6 +212,20 @@ impl Core<'_> {
             BoxCode::TimedOut { time, output, memory } => self.timed_out(*time, *output, *memory, on),
             _ if !on => {}
             BoxCode::Copy(rows) => self.copy_rows(rows),
+            BoxCode::Print { pieces, to } => {
+                let (mut text, mut length) = ([0u8; LONGEST_TEXT], 0);
+                for piece in pieces {
+                    let characters = match piece {
+                        Piece::Literal(characters) => characters,
+                        Piece::Text(place) => self.s.data.characters(*place),
+                    };
+                    let room = text.get_mut(length..).unwrap_or_default();
+                    let taken = characters.len().min(room.len());
+                    room.iter_mut().zip(characters).for_each(|(to, from)| *to = *from);
+                    length += taken;
+                }
+                self.s.data.set_characters(*to, text.get(..length).unwrap_or_default());
+            }
             BoxCode::RawCopy { from, to, count } => self.raw_copy(*from, *to, *count),
             BoxCode::Fill(fills) => {
                 for (first, stride, count, value) in fills {

@@ -207,6 +207,11 @@ pub(crate) enum BoxCode {
         room: u32,
         count: Source,
     },
+    /// Pieces of text one behind the other, into a string.
+    Print {
+        pieces: Vec<Piece>,
+        to: Place,
+    },
     Scale {
         values: [Source; 5],
         to: Target,
@@ -236,6 +241,14 @@ pub(crate) enum BoxCode {
         output: u32,
         memory: u32,
     },
+}
+
+/// A piece of text.
+#[derive(Clone, Debug)]
+pub(crate) enum Piece {
+    Literal(Vec<u8>),
+    /// A string.
+    Text(Place),
 }
 
 #[derive(Clone, Debug)]

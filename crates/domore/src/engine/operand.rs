@@ -1,12 +1,30 @@
 //! Operands of instructions bound to memory.
 
-use super::op::{Compiled, CopyRow, Source, Span, Target};
-use crate::address::{Address, Cast, Element, Operand, columns};
+use super::op::{Compiled, CopyRow, Piece, Source, Span, Target};
+use crate::address::{Address, Cast, Element, Operand, columns, unquote, written_columns};
 use crate::math::IndexedPlace;
 use crate::memory::{Block, ElementType, Kind, Num, Place, Resolved};
 
 /// What is wrong with an operand, in words.
 pub(crate) type Why = String;
+
+/// The characters of a literal; `$0D` is one by its number. (Designer export)
+fn characters(literal: &str) -> Result<Vec<u8>, Why> {
+    let mut found = Vec::new();
+    let mut rest = literal.chars();
+    while let Some(c) = rest.next() {
+        let wrong = || format!("{literal}: `{c}` in a literal is not decoded");
+        match c {
+            '$' => {
+                let digits: String = rest.by_ref().take(2).collect();
+                found.push(u8::from_str_radix(&digits, 16).ok().filter(|_| digits.len() == 2).ok_or_else(wrong)?);
+            }
+            '"' => return Err(wrong()),
+            c => found.push(u8::try_from(u32::from(c)).map_err(|_| wrong())?),
+        }
+    }
+    Ok(found)
+}
 
 impl Compiled {
     fn operand(&self, text: &str) -> Result<Operand, Why> {
@@ -145,6 +163,30 @@ impl Compiled {
             return Err(format!("{text}: expected a table of {width} columns"));
         }
         Ok(cells)
+    }
+
+    /// A string to write.
+    pub(crate) fn text_place(&self, text: &str) -> Result<Place, Why> {
+        match self.resolve(text)?.1 {
+            Resolved::Place(place @ Place { kind: Kind::Text(_), read_only: false, .. }) => Ok(place),
+            _ => Err(format!("{text} is no string")),
+        }
+    }
+
+    /// What STRPRINT writes: literals and strings.
+    pub(crate) fn pieces(&self, text: &str) -> Result<Vec<Piece>, Why> {
+        let Operand::Quoted(inside) = self.operand(text)? else {
+            return Err(format!("{text}: expected a text in quotes"));
+        };
+        let columns = written_columns(&inside).map_err(|error| error.to_string())?;
+        let piece = |column: &str| match unquote(column) {
+            Some(literal) => characters(&literal).map(Piece::Literal),
+            None => match self.text_place(column) {
+                Ok(place) => Ok(Piece::Text(place)),
+                Err(_) => Err(format!("{column}: only literals and strings are printed")),
+            },
+        };
+        columns.into_iter().map(piece).collect()
     }
 
     /// Rows `src dst count`.

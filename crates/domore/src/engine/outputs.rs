@@ -17,11 +17,15 @@ const FLASHER: &str = "FLASHER is taken to begin ON and to be OFF while not enab
 const DEBOUNCE: &str = "DEBOUNCE is taken to follow the power flow after it was stable for the on or off time";
 const TIMED_OUT: &str =
     "TIMEDOUT is taken to stay ON for its time after the power flow rises; its flags are not decoded";
+const PIECES: &str = "the pieces of STRPRINT with flags 0x4 are taken to follow each other without a blank";
 const COPY_FLAGS: &str = "the flags of COPY are not decoded; rows are copied one after the other";
 const SUSPENDED: &str = "SUSPEND is taken to pause a program without a termination scan, RUN to go on";
 const RESTARTED: &str = "RESTART is taken to make one termination scan and to start in the scan behind it";
 const LOOP_END: &str = "the value a loop variable has behind its loop is not described; taken as one step past the end";
 const DATES: &str = "COPY through casts reads and writes element by element, in the order of its rows";
+
+/// Flags of STRPRINT that replaces its string. (Designer export)
+const PRINT_OVER: i64 = 4;
 
 type Output = Result<(Op, Vec<&'static str>), Why>;
 
@@ -98,8 +102,8 @@ impl Compiler {
                 let target = keep(&mut self.out.targets, target);
                 exact(Op::Step { add: if mnemonic == "INC" { 1 } else { -1 }, target })
             }
-            "COPY" | "INIT" | "MEMCOPY" | "MEMCLEAR" | "STRCLEAR" | "SCALE" | "CLAMP" | "FILTER" | "FLASHER"
-            | "DEBOUNCE" | "TIMEDOUT" => {
+            "COPY" | "INIT" | "MEMCOPY" | "MEMCLEAR" | "STRCLEAR" | "STRPRINT" | "SCALE" | "CLAMP" | "FILTER"
+            | "FLASHER" | "DEBOUNCE" | "TIMEDOUT" => {
                 let (code, notes) = self.data(mnemonic, instruction)?;
                 Ok((Op::Box(keep(&mut self.out.boxes, code)), notes))
             }
@@ -213,6 +217,15 @@ impl Compiler {
                     return Err(format!("{}: expected a string", text(0)));
                 };
                 (BoxCode::Clear { first: first.bit, stride, room, count: out.source(text(1))? }, Vec::new())
+            }
+            "STRPRINT" => {
+                if constant(text(1)) != Some(PRINT_OVER) || !text(3).is_empty() {
+                    return Err(format!("flags {} of STRPRINT are not decoded", text(1)));
+                }
+                let to = out.text_place(text(0))?;
+                let pieces = out.pieces(text(2))?;
+                let notes = if pieces.len() > 1 { vec![PIECES] } else { Vec::new() };
+                (BoxCode::Print { pieces, to }, notes)
             }
             "SCALE" => {
                 let mut value = |index| out.source(text(index));

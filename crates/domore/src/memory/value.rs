@@ -165,26 +165,35 @@ impl Data {
         }
     }
 
-    /// The text at a string place.
-    pub fn text(&self, place: Place) -> String {
-        let Kind::Text(most) = place.kind else { return String::new() };
+    /// The characters at a string place.
+    pub fn characters(&self, place: Place) -> &[u8] {
+        let Kind::Text(most) = place.kind else { return &[] };
         let length = usize::from(u16::from_le_bytes(self.chunk(place.bit)).min(most));
         let start = (place.bit >> 3) as usize + 4;
-        let bytes = self.bytes.get(start..start + length).unwrap_or_default();
-        bytes.iter().map(|byte| char::from(*byte)).collect()
+        self.bytes.get(start..start + length).unwrap_or_default()
+    }
+
+    /// Writes characters; what does not fit is cut.
+    pub fn set_characters(&mut self, place: Place, characters: &[u8]) {
+        let Kind::Text(most) = place.kind else { return };
+        let characters = characters.get(..usize::from(most)).unwrap_or(characters);
+        self.put(place.bit, (characters.len() as u16).to_le_bytes());
+        let start = (place.bit >> 3) as usize + 4;
+        if let Some(room) = self.bytes.get_mut(start..start + characters.len()) {
+            room.copy_from_slice(characters);
+        }
+    }
+
+    /// The text at a string place.
+    pub fn text(&self, place: Place) -> String {
+        self.characters(place).iter().map(|byte| char::from(*byte)).collect()
     }
 
     /// Writes a text; what does not fit is cut. `false`: a character has no place in a string.
     pub fn set_text(&mut self, place: Place, text: &str) -> bool {
-        let Kind::Text(most) = place.kind else { return false };
         let bytes: Option<Vec<u8>> = text.chars().map(|c| u8::try_from(u32::from(c)).ok()).collect();
-        let Some(mut bytes) = bytes else { return false };
-        bytes.truncate(most.into());
-        self.put(place.bit, (bytes.len() as u16).to_le_bytes());
-        let start = (place.bit >> 3) as usize + 4;
-        if let Some(room) = self.bytes.get_mut(start..start + bytes.len()) {
-            room.copy_from_slice(&bytes);
-        }
+        let Some(bytes) = bytes.filter(|_| matches!(place.kind, Kind::Text(_))) else { return false };
+        self.set_characters(place, &bytes);
         true
     }
 }
