@@ -11,6 +11,7 @@
 //! * [`Coverage`]: how much of the program is documented.
 //! * [`diff`]: what differs between two programs.
 //! * [`history`]: saves of one machine in order, and what changed from each to the next.
+//! * [`merge`]: two programs that were made of one, put together again.
 //! * [`checks`]: what an experienced engineer would question, with codes.
 //! * [`proof`]: two programs side by side, scan by scan, with the same inputs.
 //! * [`search`]: addresses, instructions with wildcards, texts, regular expressions.
@@ -26,6 +27,7 @@ pub mod csv;
 pub mod diff;
 pub mod history;
 mod location;
+pub mod merge;
 pub mod proof;
 pub mod search;
 mod space;

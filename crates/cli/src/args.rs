@@ -129,6 +129,11 @@ pub enum Command {
                             Run inside a repository, or with --global for all of yours. It can be run again at any time. See docs/history.md."
     )]
     GitSetup(GitSetupArguments),
+    /// Merges two saves of a project that were made of one; what git-setup --merge lets git call
+    #[command(after_help = "Example: rungs merge-driver base.RSS ours.RSS theirs.RSS conveyor.RSS\n\n\
+                            A merge without conflicts is written to OURS. Exit code 0: merged; 1: a person must decide, OURS is unchanged \
+                            and NAME.conflict.slc has both sides; 2: bad use. See docs/history.md.")]
+    MergeDriver(MergeArguments),
     /// The text of a project that git compares
     #[command(hide = true, after_help = "Example: rungs textconv conveyor.RSS")]
     Textconv(TextconvArguments),
@@ -619,6 +624,22 @@ pub struct GitSetupArguments {
     /// Where git finds rungs; default: this program
     #[arg(long, value_name = "PATH")]
     pub program: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct MergeArguments {
+    /// What both were made of
+    #[arg(value_name = "BASE")]
+    pub base: PathBuf,
+    /// The save to merge into; the result replaces it
+    #[arg(value_name = "OURS")]
+    pub ours: PathBuf,
+    /// The save to merge
+    #[arg(value_name = "THEIRS")]
+    pub theirs: PathBuf,
+    /// The project's path: for messages, and for the conflict file beside it
+    #[arg(value_name = "NAME")]
+    pub path: String,
 }
 
 #[derive(Args)]

@@ -69,12 +69,13 @@ fn clean(line: &str) -> String {
     render::clean(line).into_owned()
 }
 
-fn one_line(text: &str) -> String {
+/// On one line, without what would end a comment of the notation.
+pub fn one_line(text: &str) -> String {
     clean(&text.replace(['\r', '\n', '%'], " "))
 }
 
 /// The comment above, then the rung: on one line, or with a line for each leg.
-fn write_rung(image: &Image, rung: &Rung, out: &mut String) {
+pub fn write_rung(image: &Image, rung: &Rung, out: &mut String) {
     if let Some(comment) = &rung.comment {
         let title = Some(comment.title.as_str()).filter(|title| !title.trim().is_empty());
         let title = title.map(|title| format!("TITLE: {}", one_line(title)));

@@ -13,6 +13,7 @@ mod align;
 mod configuration;
 mod do_more;
 mod documentation;
+mod equal;
 mod files;
 mod inside;
 mod keys;
@@ -28,6 +29,7 @@ use std::fmt;
 use ladder::{Documentation, Image};
 
 pub use do_more::compare_domore;
+pub(crate) use equal::{Equality, matched};
 pub use inside::{Edit, EditKind, Word};
 pub use profile::Profile;
 

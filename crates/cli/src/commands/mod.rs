@@ -12,6 +12,7 @@ mod git_setup;
 mod history;
 mod info;
 mod junit;
+mod merge_driver;
 mod migrate;
 mod prove;
 mod report;
@@ -58,6 +59,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Diff(arguments) => diff::run(&arguments),
         Command::History(arguments) => history::run(&arguments),
         Command::GitSetup(arguments) => git_setup::run(&arguments),
+        Command::MergeDriver(arguments) => merge_driver::run(&arguments),
         Command::Textconv(arguments) => git_setup::textconv(&arguments),
         Command::Report(arguments) => report::run(&arguments),
     }

@@ -50,13 +50,13 @@ fn holder(image: &Image, extension: Option<Extension>) -> Result<DataHolder<'_>>
     Ok(DataHolder { user: files, between: None, function, m })
 }
 
-fn code(file_type: FileType) -> Result<FileTypeCode> {
+pub(super) fn code(file_type: FileType) -> Result<FileTypeCode> {
     codes::type_code(file_type)
         .map(FileTypeCode)
         .ok_or_else(|| Error::Unwritable(format!("no stored number of data file type {file_type} is known")))
 }
 
-fn stored(file: &DataFile) -> Result<data::DataFile<'_>> {
+pub(super) fn stored(file: &DataFile) -> Result<data::DataFile<'_>> {
     Ok(data::DataFile {
         type_code: code(file.file_type)?,
         elements: file.elements,

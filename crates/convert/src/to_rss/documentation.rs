@@ -115,7 +115,7 @@ pub(super) fn database<'a>(
     Ok(Database { header, addresses, instruction_comments, mnemonics, comments, ..Database::default() })
 }
 
-fn order(id: u32) -> (u32, std::cmp::Reverse<u32>) {
+pub(super) fn order(id: u32) -> (u32, std::cmp::Reverse<u32>) {
     (id >> 4, std::cmp::Reverse(id))
 }
 
@@ -124,7 +124,7 @@ fn number(count: usize) -> Result<u32> {
 }
 
 /// Descriptions of files are stored cut into pieces of the line's width, without regard to words.
-fn pieces(description: &[String]) -> Result<[Text<'static>; LINES]> {
+pub(super) fn pieces(description: &[String]) -> Result<[Text<'static>; LINES]> {
     let mut stored: [Text<'static>; LINES] = Default::default();
     let cut = description.iter().flat_map(|line| {
         let characters: Vec<char> = line.chars().collect();
@@ -138,7 +138,7 @@ fn pieces(description: &[String]) -> Result<[Text<'static>; LINES]> {
     Ok(stored)
 }
 
-fn lines(lines: &[String]) -> Result<[Text<'_>; LINES]> {
+pub(super) fn lines(lines: &[String]) -> Result<[Text<'_>; LINES]> {
     let mut stored: [Text<'_>; LINES] = Default::default();
     if lines.len() > LINES {
         return Err(Error::Unwritable(format!("a description of {} lines, {LINES} fit", lines.len())));

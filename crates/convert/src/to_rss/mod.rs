@@ -9,6 +9,7 @@
 mod configuration;
 mod data;
 mod documentation;
+pub mod merge;
 pub(crate) mod program;
 mod target;
 

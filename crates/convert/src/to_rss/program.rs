@@ -28,8 +28,22 @@ pub(super) fn files<'a>(image: &'a Image, comments: &mut CommentWriter, notes: &
     Ok(ProgramFiles { files })
 }
 
-fn unused_flags(number: u16) -> u16 {
+pub(super) fn unused_flags(number: u16) -> u16 {
     LadFile::NO_PROGRAM | if number < 2 { 0 } else { LadFile::LADDER }
+}
+
+/// The name in its ten bytes.
+pub(super) fn stored_name(file: &ProgramFile) -> Result<[u8; 10]> {
+    let place = format!("program file {}", file.number);
+    let bytes = rss::text::encode(&file.name).map_err(|c| Error::Unwritable(format!("{place}: {c:?} in its name")))?;
+    let mut name = [0; 10];
+    match name.get_mut(..bytes.len()) {
+        Some(start) => start.copy_from_slice(&bytes),
+        None => {
+            return Err(Error::Unwritable(format!("{place}: name `{}` has more than 10 characters", file.name)));
+        }
+    }
+    Ok(name)
 }
 
 struct ProgramWriter<'n> {
@@ -41,15 +55,7 @@ struct ProgramWriter<'n> {
 impl ProgramWriter<'_> {
     fn file<'a>(&mut self, file: &'a ProgramFile) -> Result<LadFile<'a>> {
         let place = format!("program file {}", file.number);
-        let bytes =
-            rss::text::encode(&file.name).map_err(|c| Error::Unwritable(format!("{place}: {c:?} in its name")))?;
-        let mut name = [0; 10];
-        match name.get_mut(..bytes.len()) {
-            Some(start) => start.copy_from_slice(&bytes),
-            None => {
-                return Err(Error::Unwritable(format!("{place}: name `{}` has more than 10 characters", file.name)));
-            }
-        }
+        let name = stored_name(file)?;
         let mut rungs = Vec::with_capacity(file.rungs.len() + 1);
         for (index, rung) in file.rungs.iter().enumerate() {
             if rung.is_end() && index + 1 < file.rungs.len() {
