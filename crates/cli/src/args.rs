@@ -106,7 +106,7 @@ pub enum Command {
                             in part; 2: bad use; 3: a program or map that cannot be read. See docs/proof.md for what a verdict means."
     )]
     Prove(ProveArguments),
-    /// The whole project as a document: one HTML page with search, links and every section of the vendor's report
+    /// The whole project as a document with every section of the vendor's report: an HTML page with search and links, or a PDF
     #[command(after_help = sections_help())]
     Report(ReportArguments),
     /// What changed between two programs, rung by rung; documentation, values and configuration apart
@@ -330,9 +330,18 @@ pub struct ReportArguments {
     /// Projects or folders of projects
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Page to write (.html); with several projects or a folder: the folder that gets a page each and index.html
+    /// File to write: a page (.html) or a book to print (.pdf); with several projects or a folder: the folder that gets a file each and index.html
     #[arg(short, long, value_name = "PATH")]
     pub out: PathBuf,
+    /// What to write where --out has no ending that tells it
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub to: Option<Medium>,
+    /// Paper of a PDF; default: A4
+    #[arg(long, value_enum, value_name = "SIZE")]
+    pub paper: Option<Paper>,
+    /// The longer side of a PDF's paper lies: wide rungs stay in one line
+    #[arg(long)]
+    pub landscape: bool,
     /// Only these sections, separated by commas; names below
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sections: Vec<String>,
@@ -353,10 +362,39 @@ pub struct ReportArguments {
     pub image: ImageChoice,
 }
 
+/// Forms of a report.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Medium {
+    /// One page with search, that needs no network
+    Html,
+    /// A book with contents, page numbers and bookmarks
+    Pdf,
+}
+
+/// Sizes of paper.
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Paper {
+    /// 210 mm by 297 mm
+    #[default]
+    A4,
+    /// 8.5 inches by 11 inches
+    Letter,
+}
+
+impl From<Paper> for report::pdf::Paper {
+    fn from(paper: Paper) -> Self {
+        match paper {
+            Paper::A4 => report::pdf::Paper::A4,
+            Paper::Letter => report::pdf::Paper::Letter,
+        }
+    }
+}
+
 /// The sections of a report by name, with an example.
 fn sections_help() -> String {
     let mut text = String::from(
         "Example: rungs report conveyor.RSS --out conveyor.html\n         rungs report plant/ --out reports\n         \
+         rungs report conveyor.RSS --out conveyor.pdf --paper letter\n         \
          rungs report conveyor.RSS --out io.html --sections io,io-map,timers\n\nSections, in their order:\n",
     );
     for kind in report::Kind::all() {

@@ -15,6 +15,8 @@ use crate::options::Kind;
 pub struct Document<'a> {
     /// File name of the project, with the image when it is not the main one.
     pub title: String,
+    /// The processor, as far as it is known.
+    pub processor: String,
     /// What made the report: program and version.
     pub tool: String,
     /// The date that was asked for, as given; empty: none is shown.

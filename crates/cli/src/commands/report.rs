@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 
 use ladder::Severity;
 use report::html::Page;
-use report::{Document, DomoreSource, Options, Selection, Source, words};
+use report::pdf::Format;
+use report::{Document, DomoreSource, Options, Selection, Source};
 
 use super::{Opened, domore::OpenedDomore, each_dialect};
-use crate::args::{ImageChoice, Input, ReportArguments};
+use crate::args::{ImageChoice, Input, Medium, ReportArguments};
 use crate::output::{Error, Outcome, printable};
 
 /// Name of the list of several reports.
@@ -27,10 +28,9 @@ pub fn run(arguments: &ReportArguments) -> Result<Outcome, Error> {
             return Err(Error::Use(format!("several projects: {} must be a folder", target.display())));
         }
         std::fs::create_dir_all(target).map_err(|error| Error::Use(format!("{}: {error}", target.display())))?;
-    } else {
-        check_ending(target)?;
     }
-    let pages = RefCell::new(Pages { many, target, force: arguments.force, names: HashSet::new(), list: Vec::new() });
+    let medium = medium(arguments, many)?;
+    let pages = RefCell::new(Pages { many, target, arguments, medium, names: HashSet::new(), list: Vec::new() });
     let slc = |opened: &Opened, out: &mut dyn Write| {
         let which = match opened.choice {
             ImageChoice::Main => "",
@@ -40,7 +40,7 @@ pub fn run(arguments: &ReportArguments) -> Result<Outcome, Error> {
         let (image, documentation) = (opened.image(), opened.documentation());
         let document = report::project(&Source { project: &opened.project, image, documentation, which }, &options);
         let page = Page {
-            processor: words::processor(&image.processor),
+            processor: document.processor.clone(),
             files: image.ladder_files().count(),
             rungs: image.ladder_files().map(|file| file.rungs.len()).sum(),
             saved_at: opened.project.source.saved_at.clone().unwrap_or_default(),
@@ -56,7 +56,7 @@ pub fn run(arguments: &ReportArguments) -> Result<Outcome, Error> {
             &options,
         );
         let page = Page {
-            processor: format!("Do-more {}", project.controller()).trim_end().to_owned(),
+            processor: document.processor.clone(),
             files: project.code_blocks().count(),
             rungs: project.code_blocks().map(|block| block.rungs.len()).sum(),
             ..described(&opened.path, source, &found)
@@ -68,12 +68,30 @@ pub fn run(arguments: &ReportArguments) -> Result<Outcome, Error> {
     if many { pages.write_index(arguments).map(|written| outcome.max(written)) } else { Ok(outcome) }
 }
 
-fn check_ending(target: &Path) -> Result<(), Error> {
-    let ending = target.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    if matches!(ending.as_str(), "html" | "htm") {
-        return Ok(());
+/// What `--to` names, else the ending of the file; pages in a folder.
+fn medium(arguments: &ReportArguments, many: bool) -> Result<Medium, Error> {
+    let ending = arguments.out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let named = match ending.as_deref() {
+        Some("html" | "htm") => Some(Medium::Html),
+        Some("pdf") => Some(Medium::Pdf),
+        _ => None,
+    };
+    let medium = match (arguments.to, named) {
+        (Some(wanted), Some(named)) if !many && wanted != named => {
+            return Err(Error::Use(format!("{}: its ending is not that of what --to names", arguments.out.display())));
+        }
+        (Some(wanted), _) => wanted,
+        (None, Some(named)) if !many => named,
+        (None, _) if many => Medium::Html,
+        (None, _) => {
+            let place = arguments.out.display();
+            return Err(Error::Use(format!("{place}: expected a name that ends with .html or .pdf, or --to")));
+        }
+    };
+    if medium != Medium::Pdf && (arguments.paper.is_some() || arguments.landscape) {
+        return Err(Error::Use("--paper and --landscape are for PDF".to_owned()));
     }
-    Err(Error::Use(format!("{}: expected a name that ends with .html", target.display())))
+    Ok(medium)
 }
 
 /// What the list says of any project.
@@ -91,7 +109,8 @@ fn described(path: &Path, source: &ladder::Source, found: &[ladder::Diagnostic])
 struct Pages<'a> {
     many: bool,
     target: &'a Path,
-    force: bool,
+    arguments: &'a ReportArguments,
+    medium: Medium,
     names: HashSet<String>,
     list: Vec<Page>,
 }
@@ -111,7 +130,7 @@ impl Pages<'_> {
         } else {
             (self.target.to_owned(), String::new())
         };
-        let why = match self.write(&target, |file| report::html::page(document, file)) {
+        let why = match self.write(&target, |file| self.content(document, file)) {
             Ok(()) => {
                 writeln!(out, "{}", target.display())?;
                 self.list.push(Page { href, ..page });
@@ -128,8 +147,21 @@ impl Pages<'_> {
         Ok(Outcome::NotWritten)
     }
 
+    fn content(&self, document: &Document<'_>, file: &mut dyn Write) -> std::io::Result<()> {
+        match self.medium {
+            Medium::Html => report::html::page(document, file),
+            Medium::Pdf => {
+                let format = Format {
+                    paper: self.arguments.paper.unwrap_or_default().into(),
+                    landscape: self.arguments.landscape,
+                };
+                file.write_all(&report::pdf::write(document, format).bytes)
+            }
+        }
+    }
+
     fn write(&self, target: &Path, content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), String> {
-        if target.exists() && !self.force {
+        if target.exists() && !self.arguments.force {
             return Err(format!("{} exists; --force overwrites it", target.display()));
         }
         let written = std::fs::File::create(target).and_then(|file| {
@@ -150,12 +182,16 @@ impl Pages<'_> {
             .take(80)
             .collect();
         let letters = if letters.is_empty() { "project".to_owned() } else { letters };
-        let mut name = format!("{letters}.html");
+        let ending = match self.medium {
+            Medium::Html => "html",
+            Medium::Pdf => "pdf",
+        };
+        let mut name = format!("{letters}.{ending}");
         let mut number = 1;
         // Some file systems take upper and lower case for the same.
         while name.eq_ignore_ascii_case(INDEX) || !self.names.insert(name.to_ascii_lowercase()) {
             number += 1;
-            name = format!("{letters}-{number}.html");
+            name = format!("{letters}-{number}.{ending}");
         }
         name
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use render::pdf::{Area, Canvas, Color, Font, Letters};
+use render::pdf::{Area, Canvas, Color, Font, Letters, printable};
 
 use super::text::Line;
 use super::{Format, Paper};
@@ -305,11 +305,14 @@ impl<'a> Book<'a> {
         let (left, right, room) = (sheet.left(), sheet.right(), sheet.width());
         let small = Letters { font: Font::Sans, size: 7.5, color: Color(0.2, 0.2, 0.2) };
         let bold = Letters { font: Font::SansBold, size: 8.5, color: Color::BLACK };
-        let Document { title, tool, date, .. } = self.document;
+        let Document { title, processor, tool, date, .. } = self.document;
         for (index, page) in self.pages.iter_mut().enumerate() {
             let canvas = &mut page.canvas;
             let top = TOP + 9.0;
-            canvas.fitted(left, top, bold, room, title);
+            let (used, _) = canvas.fitted(left, top, bold, room * 0.6, title);
+            let wanted = small.font.width(&printable(processor).0, small.size);
+            let width = wanted.min(room - used - 12.0);
+            canvas.fitted(right - width, top, small, width, processor);
             canvas.fitted(left, top + 11.0, small, room, &page.section);
             let line = TOP + HEAD - 7.0;
             canvas.line(&[(left, line), (right, line)], 0.5, RULE);

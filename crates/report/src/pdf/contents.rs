@@ -34,11 +34,10 @@ fn paint<'a>(book: &Book<'a>, format: Format, before: usize) -> Book<'a> {
     let mut front = Book::new(document, format);
     front.begin("Contents");
     front.title(&document.title, 18.0, false);
-    let made: Vec<&str> =
-        [document.date.as_str(), document.tool.as_str()].into_iter().filter(|t| !t.is_empty()).collect();
-    if !made.is_empty() {
-        let (left, y) = (front.left(), front.y + BODY);
-        front.canvas().text(left, y, NUMBER, &made.join("  -  "));
+    let made = [&document.processor, &document.date, &document.tool];
+    for line in made.into_iter().filter(|text| !text.is_empty()) {
+        let (left, y, room) = (front.left(), front.y + BODY, front.room());
+        front.canvas().fitted(left, y, NUMBER, room, line);
         front.y += LEADING;
     }
     front.space(6.0);

@@ -75,6 +75,7 @@ pub fn project<'a>(source: &Source<'a>, options: &Options) -> Document<'a> {
     let which = if source.which.is_empty() { String::new() } else { format!(" ({})", source.which) };
     let mut document = Document {
         title: format!("{}{which}", source.project.source.file),
+        processor: crate::words::processor(&source.image.processor),
         tool: concat!("rungs ", env!("CARGO_PKG_VERSION")).to_owned(),
         date: options.date.clone().unwrap_or_default(),
         notes: notes(&source.project.diagnostics),
