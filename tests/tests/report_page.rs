@@ -146,7 +146,7 @@ fn usable_at_three_widths() {
     for (name, width, height) in [("wide", 1400, 900), ("medium", 820, 1000), ("narrow", 500, 900)] {
         browser.resize(width, height);
         for (part, place) in
-            [("top", "processor"), ("ladder", "r-2-0"), ("data", "data"), ("xref", "xref"), ("timers", "timers")]
+            [("top", "processor"), ("ladder", "r-2-0"), ("data", "d-B3"), ("xref", "xref"), ("timers", "timers")]
         {
             browser.run(&format!("location.hash = ''; location.hash = '#{place}'"));
             browser.run("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");

@@ -202,14 +202,20 @@
     const link = event.target.closest("a[href^='#']");
     if (link && link.getAttribute("href") === location.hash) arrive();
   });
+  // Only what stands in the section in sight is measured: to measure what is out of sight, it would have to
+  // be laid out.
   const leap = (by) => {
-    const stops = [...main.querySelectorAll("section, .r")].filter((stop) => stop.offsetParent !== null);
-    const line = 90, tops = stops.map((stop) => stop.getBoundingClientRect().top - line);
-    let at = by > 0 ? tops.findIndex((top) => top > 2) : tops.findLastIndex((top) => top < -2);
-    if (at < 0) return;
+    const top = (stop) => stop.getBoundingClientRect().top - 90;
+    const stops = (section) => !section ? [] : one("details", section).open ? [section, ...section.querySelectorAll(".r")] : [section];
+    const sections = [...main.querySelectorAll("section")];
+    const at = sections.findLastIndex((section) => top(section) <= 2);
+    const next = by > 0
+      ? [...stops(sections[at]), sections[at + 1]].find((stop) => stop && top(stop) > 2)
+      : stops(sections[at]).findLast((stop) => top(stop) < -2) ?? stops(sections[at - 1]).at(-1);
+    if (!next) return;
     one(".here")?.classList.remove("here");
-    if (stops[at].matches(".r")) stops[at].classList.add("here");
-    scrollBy({ top: tops[at] });
+    if (next.matches(".r")) next.classList.add("here");
+    scrollBy({ top: top(next) });
   };
   const folds = () => main.querySelectorAll("section > details");
   const foldAll = () => {

@@ -7,14 +7,23 @@ use render::svg;
 use crate::model::{Block, Column, ColumnKind, Document, Note, NoteKind, Row, RowKind, Rung, Table, Text, TreeItem};
 
 use super::escape;
+use super::sizes::{self, Sizes};
 
 /// Columns of a drawing.
 const WIDTH: usize = 110;
 
-pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn Write) -> io::Result<()> {
+/// Writes blocks and tells about how high they are.
+pub(super) fn write(
+    document: &Document<'_>,
+    blocks: &[Block<'_>],
+    heights: &mut Sizes,
+    out: &mut dyn Write,
+) -> io::Result<usize> {
+    let mut pixels = 0;
     let mut in_rungs = false;
     for block in blocks {
         // The rungs of a file move sideways together where they are wider than the window.
+        pixels += sizes::of_block(block);
         let is_rung = matches!(block, Block::Rung(_));
         if is_rung != std::mem::replace(&mut in_rungs, is_rung) {
             out.write_all(if is_rung { b"<div class=rungs>\n" } else { b"</div>\n" })?;
@@ -30,9 +39,9 @@ pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn
                 }
                 out.write_all(b"</dl>\n")?;
             }
-            Block::Table(of) if of.rows.iter().any(|row| row.kind == RowKind::Group) => grouped(of, out)?,
-            Block::Table(of) => table(of, out)?,
-            Block::Rung(of) => rung(document, of, out)?,
+            Block::Table(of) if of.rows.iter().any(|row| row.kind == RowKind::Group) => grouped(of, heights, out)?,
+            Block::Table(of) => table(of, heights, out)?,
+            Block::Rung(of) => pixels += rung(document, of, heights, out)?,
             Block::Note(of) => note(of, out)?,
             Block::Tree(items) => {
                 out.write_all(b"<ul class=tree>\n")?;
@@ -41,7 +50,10 @@ pub(super) fn write(document: &Document<'_>, blocks: &[Block<'_>], out: &mut dyn
             }
         }
     }
-    if in_rungs { out.write_all(b"</div>\n") } else { Ok(()) }
+    if in_rungs {
+        out.write_all(b"</div>\n")?;
+    }
+    Ok(pixels)
 }
 
 pub(super) fn note(note: &Note, out: &mut dyn Write) -> io::Result<()> {
@@ -77,8 +89,8 @@ fn class(column: Option<&Column>) -> &'static str {
     }
 }
 
-fn table(table: &Table, out: &mut dyn Write) -> io::Result<()> {
-    out.write_all(b"<div class=wide><table><thead><tr>")?;
+fn table(table: &Table, heights: &mut Sizes, out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "<div class=\"wide v {}\"><table><thead><tr>", heights.class(sizes::of_table(table)))?;
     for column in &table.columns {
         write!(out, "<th{}>{}", class(Some(column)), escape(&column.title))?;
     }
@@ -105,7 +117,7 @@ fn plain(table: &Table, row: &Row, classes: bool, out: &mut dyn Write) -> io::Re
 }
 
 /// Groups as blocks of their own, which a browser can leave out while they are not in sight.
-fn grouped(table: &Table, out: &mut dyn Write) -> io::Result<()> {
+fn grouped(table: &Table, heights: &mut Sizes, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(b"<div class=wide><table class=heads><thead><tr>")?;
     for (number, column) in table.columns.iter().enumerate() {
         write!(out, "<th class=c{number}>{}", escape(&column.title))?;
@@ -121,9 +133,12 @@ fn grouped(table: &Table, out: &mut dyn Write) -> io::Result<()> {
         if row.kind != RowKind::Group {
             continue;
         }
+        let below = rows.clone().take_while(|row| row.kind == RowKind::Plain).count();
+        let class = heights.class(sizes::of_row(row.kind) + below * sizes::of_row(RowKind::Plain));
+        write!(out, "<div class=\"g v {class}\"")?;
         match &row.anchor {
-            Some(anchor) => write!(out, "<div class=g id=\"{anchor}\"><p>")?,
-            None => out.write_all(b"<div class=g><p>")?,
+            Some(anchor) => write!(out, " id=\"{anchor}\"><p>")?,
+            None => out.write_all(b"><p>")?,
         }
         for (number, cell) in row.cells.iter().enumerate().filter(|(_, cell)| !cell.is_empty()) {
             let tag = match number {
@@ -169,23 +184,20 @@ fn tree(items: &[TreeItem], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn rung(document: &Document<'_>, rung: &Rung<'_>, out: &mut dyn Write) -> io::Result<()> {
+/// Draws a rung and tells how high it is.
+fn rung(document: &Document<'_>, rung: &Rung<'_>, heights: &mut Sizes, out: &mut dyn Write) -> io::Result<usize> {
     let scene = rung.scene(&render::Style::graphic(WIDTH));
     let href = |address: &str| document.place_of_address(address).map(|place| format!("#{place}"));
+    let pixels = sizes::of_rows(scene.height);
     let label = format!("Rung {}", rung.label);
     let options = svg::Options { href: &href, label: &label, ..svg::Options::default() };
     writeln!(
         out,
-        "<div class=\"r s{}\" id=\"{}\" data-rung=\"{}\">{}</div>",
-        size(scene.height),
+        "<div class=\"r v {}\" id=\"{}\" data-rung=\"{}\">{}</div>",
+        heights.class(pixels),
         rung.anchor,
         escape(&rung.label),
         svg::drawing(&scene, &options)
-    )
-}
-
-/// The class that tells a browser about how high something of so many rows is.
-fn size(rows: usize) -> usize {
-    const ROWS: [usize; 6] = [6, 10, 16, 28, 50, 100];
-    ROWS.iter().position(|most| rows <= *most).unwrap_or(ROWS.len())
+    )?;
+    Ok(pixels)
 }

@@ -31,7 +31,7 @@ pub struct Page {
 /// # Errors
 /// What writing gives.
 pub fn index(title: &str, tool: &str, pages: &[Page], out: &mut dyn Write) -> io::Result<()> {
-    head(title, out)?;
+    head(title, "", out)?;
     bar(title, out)?;
     write!(
         out,

@@ -8,6 +8,7 @@ mod blocks;
 mod escape;
 mod hash;
 mod index;
+mod sizes;
 
 use std::io::{self, Write};
 
@@ -25,7 +26,13 @@ const SCRIPT: &str = include_str!("../../assets/report.js");
 /// # Errors
 /// What writing gives.
 pub fn page(document: &Document<'_>, out: &mut dyn Write) -> io::Result<()> {
-    head(&document.title, out)?;
+    // The style names the sizes of what follows it.
+    let mut heights = sizes::Sizes::default();
+    let mut body = Vec::new();
+    for section in &document.sections {
+        write_section(document, section, &mut heights, &mut body)?;
+    }
+    head(&document.title, &heights.rules(), out)?;
     bar(&document.title, out)?;
     out.write_all(b"<div class=frame>\n<nav aria-label=Contents>\n<ol>\n")?;
     for chapter in document.chapters() {
@@ -40,19 +47,29 @@ pub fn page(document: &Document<'_>, out: &mut dyn Write) -> io::Result<()> {
     for note in &document.notes {
         blocks::note(note, out)?;
     }
-    for section in &document.sections {
-        write!(
-            out,
-            "<section id=\"{}\" data-kind={} data-short=\"{}\">\n<details open><summary><h2>{}</h2></summary>\n",
-            section.anchor,
-            section.kind.name(),
-            escape(&section.short),
-            escape(&section.title)
-        )?;
-        blocks::write(document, &section.blocks, out)?;
-        out.write_all(b"</details>\n</section>\n")?;
-    }
+    out.write_all(&body)?;
     foot(out)
+}
+
+fn write_section(
+    document: &Document<'_>,
+    section: &Section<'_>,
+    heights: &mut sizes::Sizes,
+    out: &mut Vec<u8>,
+) -> io::Result<()> {
+    let mut body = Vec::new();
+    let pixels = blocks::write(document, &section.blocks, heights, &mut body)?;
+    writeln!(
+        out,
+        "<section id=\"{}\" data-kind={} data-short=\"{}\">\n<details open><summary><h2>{}</h2></summary>\n<div class=\"v {}\">",
+        section.anchor,
+        section.kind.name(),
+        escape(&section.short),
+        escape(&section.title),
+        heights.class(pixels)
+    )?;
+    out.append(&mut body);
+    out.write_all(b"</div></details>\n</section>\n")
 }
 
 /// The contents entry of sections of one kind.
@@ -71,9 +88,9 @@ fn contents(chapter: &[Section<'_>], out: &mut dyn Write) -> io::Result<()> {
     out.write_all(b"</ol></details></li>\n")
 }
 
-/// All before what can be seen.
-fn head(title: &str, out: &mut dyn Write) -> io::Result<()> {
-    let (style, script) = (style(), hash::source(SCRIPT));
+/// All before what can be seen; `rules` are added to the style.
+fn head(title: &str, rules: &str, out: &mut dyn Write) -> io::Result<()> {
+    let (style, script) = (style(rules), hash::source(SCRIPT));
     write!(
         out,
         "<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n\
@@ -87,8 +104,8 @@ fn head(title: &str, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// The style of the page and that of its drawings.
-fn style() -> String {
-    format!("{STYLE}\n{}\n", render::svg::STYLE)
+fn style(rules: &str) -> String {
+    format!("{STYLE}\n{}\n{rules}", render::svg::STYLE)
 }
 
 /// The bar at the top: title, search, buttons.
