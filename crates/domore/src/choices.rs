@@ -119,6 +119,7 @@ pub const FIXED: &[(&str, &str)] = &[
     ("a leg of a counter during a reset", "its edge memory follows it: no count when the reset ends"),
     ("the first enabled scan of a timer", "no time is charged; a TMRDOWN starts from its preset"),
     ("a timer that was not executed for some scans and stayed enabled", "it gains the time that has passed"),
+    ("an RSTT behind a timer that stays enabled", "its time counts from the reset on, as behind its reset leg"),
     ("a negative preset", "an up timer is done at once, a down timer too"),
     (".EN of a timer", "its first leg; .DN is another name of .Done"),
     ("OFFDTMR with the input ON", ".Acc is the delay, .Reset is ON"),

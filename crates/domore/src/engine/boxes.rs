@@ -92,8 +92,10 @@ impl Core<'_> {
         };
         let preset = self.preset(code.preset);
         self.put_timer_reset(reset.bit, code.kind, preset);
+        // One that stays enabled counts from here, as behind a reset by its leg.
+        let now = self.s.now;
         if let Some(clock) = self.s.timers.get_mut(owner as usize) {
-            clock.fresh = true;
+            clock.last = now;
         }
         if let Some(bit) = code.output {
             self.s.data.set_bit(bit, false);

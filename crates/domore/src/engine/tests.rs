@@ -156,7 +156,7 @@ fn resets_act_at_their_place_and_hold_for_the_scan() {
     m.shows(&[("T0.Acc", 0), ("T0.Done", 0), ("T0.Reset", 1)]);
     m.put("X1", 0);
     m.scans_of(2);
-    m.shows(&[("T0.Acc", 10)]);
+    m.shows(&[("T0.Acc", 20)]);
     for _ in 0..3 {
         m.put("X2", 0);
         m.scan(MS10);

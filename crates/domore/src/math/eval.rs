@@ -4,7 +4,7 @@
 //! a real one. `IF` evaluates only the side it takes. Where documentation ends, [`Choices`] decide.
 
 use super::{Binary, Does, Expression, Unary};
-use crate::address::{Address, Element, Number, Operand};
+use crate::address::{Address, Constant, Element, Number, Operand};
 use crate::choices::{Choice, Choices};
 use crate::instruction::Relation;
 use crate::memory::{Block, Data, Kind, Map, Num, Place, Resolved, member};
@@ -118,10 +118,11 @@ fn node(expression: &Expression, map: &Map, depth: usize) -> Result<Node, String
         }),
         Expression::Operand(Operand::Quoted(_)) => return Err("text has no value".to_owned()),
         Expression::Operand(Operand::Address(address)) => address_node(address, map)?,
-        Expression::Unary(operator, operand) => match (operator, bind(operand)?) {
-            (Unary::Negate, Node::Constant(Num::Int(value))) => Node::Constant(Num::Int(-value)),
-            (operator, operand) => Node::Unary(*operator, Box::new(operand)),
-        },
+        // The sign belongs to a literal: 2147483648 alone has no place in 32 bits.
+        Expression::Unary(Unary::Negate, operand) if let Some(value) = whole(operand) => {
+            Node::Constant(Num::Int((value.wrapping_neg() as i32).into()))
+        }
+        Expression::Unary(operator, operand) => Node::Unary(*operator, Box::new(bind(operand)?)),
         Expression::Binary(operator, left, right) => Node::Binary(*operator, Box::new((bind(left)?, bind(right)?))),
         Expression::Call(function, arguments) => {
             let name = function.name;
@@ -145,6 +146,14 @@ fn node(expression: &Expression, map: &Map, depth: usize) -> Result<Node, String
             }
         }
     })
+}
+
+/// The number of a literal that is whole.
+fn whole(expression: &Expression) -> Option<i64> {
+    match expression {
+        Expression::Operand(Operand::Constant(Constant { value: Number::Integer(value), .. })) => Some(*value),
+        _ => None,
+    }
 }
 
 /// A first element, the bits to the next one, and how many there are.

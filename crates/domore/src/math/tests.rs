@@ -42,9 +42,18 @@ fn ranks_are_those_of_c() {
         ("2147483647 + 1", -2_147_483_648),
         ("ABS(-5)", 5),
         ("0xFFFFFFFF", -1),
+        ("-2147483648", -2_147_483_648),
+        ("-2147483648 < 0", 1),
+        ("-2147483648 == 0x80000000", 1),
+        ("ABS(-2147483647)", 2_147_483_647),
+        ("-(-2147483648)", -2_147_483_648),
+        ("5 - -2147483648", -2_147_483_643),
     ] {
         gives(text, expected);
     }
+    let saturated = Choices::default().with(Choice::MathSaturates);
+    assert_eq!(evaluate("-2147483648", &[], saturated), Ok(Num::Int(-2_147_483_648)));
+    assert_eq!(evaluate("-(-2147483648)", &[], saturated), Ok(Num::Int(2_147_483_647)));
 }
 
 #[test]
