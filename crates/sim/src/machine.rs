@@ -53,7 +53,7 @@ pub struct ScanReport {
 pub struct Machine {
     pub(crate) program: Arc<Compiled>,
     pub(crate) state: State,
-    peer: Box<dyn Peer + Send>,
+    peer: Box<dyn Peer + Send + Sync>,
 }
 
 impl fmt::Debug for Machine {
@@ -76,7 +76,7 @@ impl Machine {
     }
 
     /// Connects a partner for messages and serial ports; [`NoPeer`] until then.
-    pub fn connect(&mut self, peer: Box<dyn Peer + Send>) {
+    pub fn connect(&mut self, peer: Box<dyn Peer + Send + Sync>) {
         self.peer = peer;
     }
 

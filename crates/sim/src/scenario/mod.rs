@@ -25,6 +25,7 @@ mod duration;
 mod literal;
 mod parse;
 mod run;
+pub mod spell;
 
 use std::fmt;
 use std::time::Duration;
