@@ -1,0 +1,61 @@
+// One address: its value, what can be done with it, who writes and reads it.
+
+import { get, post, tell } from "./api.js";
+import { button, byId, el } from "./dom.js";
+import { shown, typed } from "./values.js";
+
+let stop = null;
+
+export function close(live) {
+  byId("detail").hidden = true;
+  stop?.();
+  stop = null;
+  live.see("detail", null);
+}
+
+/** Opens the panel on an address. `app` is the page. */
+export async function open(app, address) {
+  const panel = byId("detail");
+  let found;
+  try {
+    found = await get(`/api/uses?address=${encodeURIComponent(address)}`);
+  } catch (problem) {
+    tell(problem.message, "wrong");
+    return;
+  }
+  close(app.live);
+  const value = el("output", { class: "value" }, "…");
+  const bit = (on) => button(on ? "1" : "0", `Write ${on}`, () => post("/api/write", { address: found.address, value: on }));
+  const input = el("input", { type: "text", ariaLabel: `New value of ${found.address}`, size: 10, autocomplete: "off" });
+  const write = el("form", { on: { submit: (event) => {
+    event.preventDefault();
+    post("/api/write", { address: found.address, value: typed(input.value) });
+  } } }, input, el("button", { type: "submit" }, "Write"));
+  const force = (state, text) =>
+    button(text, `${text} ${found.address}`, () => post("/api/force", { address: found.address, state }));
+  const point = app.project.points.some((point) => point.address === found.address && !point.analog) || /^[IOXY]/.test(found.address);
+  panel.replaceChildren(
+    el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app.live), { class: "close" })),
+    el("p", { class: "symbol" }, found.symbol),
+    el("p", { class: "description" }, found.description),
+    el("p", {}, "Value: ", value),
+    app.readOnly ? null : el("div", { class: "row" }, bit(0), bit(1), write),
+    app.readOnly || !point ? null
+      : el("div", { class: "row", role: "group", ariaLabel: "Force" }, force(true, "Force on"), force(false, "Force off"), force(null, "Remove force")),
+    el("div", { class: "row" },
+      button("Watch", "Add to the watch list", () => app.watch(found.address)),
+      button("Trend", "Add to the trend", () => app.trend(found.address))),
+    el("h3", {}, `Uses (${found.uses.length + found.left_out})`),
+    el("ul", { class: "uses" }, found.uses.map((use) => el("li", {},
+      button(`${app.routineName(use.routine)} rung ${use.rung}`, "Go to the rung", () => app.goto(use.routine, use.rung), { class: "link" }),
+      el("span", { class: `access ${use.access.includes("write") ? "writes" : "reads"}` }, use.access),
+      el("code", {}, use.text)))),
+    found.left_out ? el("p", {}, `${found.left_out} more are not listed.`) : null,
+  );
+  panel.hidden = false;
+  app.live.see("detail", { values: [found.address] });
+  stop = app.live.listen((_, live) => {
+    const now = live.values.get(found.address);
+    value.textContent = shown(now);
+  });
+}

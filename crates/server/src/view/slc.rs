@@ -1,0 +1,255 @@
+//! An RSLogix 500 project as pages show it.
+
+use std::collections::BTreeMap;
+
+use analysis::search::{Query, search};
+use analysis::{CrossReference, TimerReport};
+use instr::{Drawing, Kind};
+use ladder::{Address, DataFile, FileType, Image, Instruction, Operand, Project, Target};
+use render::{Style, figure};
+
+use super::{
+    DataFileView, DataView, ElementView, HitView, HitsView, InstructionView, LISTED, Outline, PointView, Program,
+    RoutineView, RungView, TimerView, UseView, UsesView, ValueView,
+};
+
+/// The main image of a project, with what is known about it.
+pub struct SlcProgram {
+    image: &'static Image,
+    xref: CrossReference<'static>,
+    outline: Outline,
+}
+
+impl SlcProgram {
+    /// Prepares a project to be served, which keeps it for the rest of the process: a server serves one program
+    /// until it ends. `notes` are what a person must know besides what reading the project said.
+    pub fn new(file_name: String, project: Project, notes: Vec<String>) -> SlcProgram {
+        let project: &'static Project = Box::leak(Box::new(project));
+        let image = &project.main;
+        let xref = CrossReference::build(image, &image.documentation);
+        let read = project.diagnostics.iter().map(|diagnostic| format!("{}: {}", diagnostic.place, diagnostic.message));
+        let timers = TimerReport::build(image, &xref);
+        let outline = Outline {
+            file: file_name,
+            dialect: "slc",
+            controller: controller(image),
+            routines: image.ladder_files().map(routine).collect(),
+            data_files: files(image).map(data_file).collect(),
+            points: points(image, &xref),
+            timers: timers.elements.iter().filter(|timer| !timer.instructions.is_empty()).map(timer).collect(),
+            notes: read.chain(notes).collect(),
+        };
+        SlcProgram { image, xref, outline }
+    }
+
+    fn documented(&self, address: &Address) -> (String, String) {
+        let shown = self.image.documentation.shown(&Target::from(address), "");
+        (shown.symbol.unwrap_or_default(), shown.description.join("\n"))
+    }
+}
+
+fn controller(image: &Image) -> String {
+    let catalog = image.processor.catalog.as_deref().unwrap_or_default();
+    format!("{catalog} {}", image.processor.name.as_deref().unwrap_or_default()).trim().to_owned()
+}
+
+fn files(image: &Image) -> impl Iterator<Item = &DataFile> {
+    image.data_files.iter().chain(&image.function_files).filter(|file| file.file_type != FileType::Unused)
+}
+
+fn routine(file: &ladder::ProgramFile) -> RoutineView {
+    RoutineView {
+        number: file.number,
+        title: format!("LAD {} - {}", file.number, file.name.trim()),
+        description: file.description.trim().to_owned(),
+        rungs: file.rungs.len(),
+    }
+}
+
+fn data_file(file: &DataFile) -> DataFileView {
+    let title = format!("{} {}", file.name.trim(), file.description.trim()).trim().to_owned();
+    DataFileView { label: file.label(), title, elements: elements(file) }
+}
+
+/// Rows of a data file: elements, or words of I and O.
+fn elements(file: &DataFile) -> usize {
+    match file.file_type.has_slots() {
+        true => file.words.len(),
+        false => usize::from(file.elements),
+    }
+}
+
+/// Input and output points the program names, each once.
+fn points(image: &Image, xref: &CrossReference<'_>) -> Vec<PointView> {
+    let mut points = BTreeMap::new();
+    for address in xref.named() {
+        let address = Address { indexed: false, ..address.clone() };
+        if address.file_type.has_slots() && address.is_direct() {
+            let shown = image.documentation.shown(&Target::from(&address), "");
+            let point = PointView {
+                symbol: shown.symbol.unwrap_or_default(),
+                description: shown.description.join("\n"),
+                input: address.file_type == FileType::I,
+                analog: address.bit.is_none(),
+                address: address.to_string(),
+            };
+            points.insert((address.file_type != FileType::I, key(&address)), point);
+        }
+    }
+    points.into_values().collect()
+}
+
+/// Slot, word and bit, to sort by.
+fn key(address: &Address) -> (u16, u16, u16) {
+    let number = |place: &ladder::Place| match place {
+        ladder::Place::Number(number) => *number,
+        _ => u16::MAX,
+    };
+    (number(&address.element), address.word.unwrap_or(0), address.bit.as_ref().map_or(0, number))
+}
+
+fn timer(timer: &analysis::TimerCounter) -> TimerView {
+    let address = timer.address.to_string();
+    TimerView {
+        kind: timer.mnemonics().join(" "),
+        symbol: timer.symbol.clone().unwrap_or_default(),
+        preset: Some(format!("{address}.PRE")),
+        accumulated: format!("{address}.ACC"),
+        done: format!("{address}/DN"),
+        base: timer.base.map(|base| f64::from(base.milliseconds()) / 1000.0),
+        address,
+    }
+}
+
+impl Program for SlcProgram {
+    fn file_name(&self) -> &str {
+        &self.outline.file
+    }
+
+    fn scenario_family(&self) -> Option<String> {
+        None
+    }
+
+    fn outline(&self) -> &Outline {
+        &self.outline
+    }
+
+    fn rung(&self, routine: u16, index: usize, width: usize) -> Option<RungView> {
+        let file = self.image.ladder_files().find(|file| file.number == routine)?;
+        let rung = file.rungs.get(index)?;
+        let scene = render::scene(self.image, file, index, &self.image.documentation, &Style::graphic(width));
+        let all = rung.instructions().map(|it| instruction(self.image, it)).collect();
+        Some(RungView::new(index, scene, all))
+    }
+
+    fn heights(&self, routine: u16, width: usize) -> Vec<usize> {
+        let Some(file) = self.image.ladder_files().find(|file| file.number == routine) else { return Vec::new() };
+        let height = |index| {
+            let style = Style::graphic(width);
+            render::scene(self.image, file, index, &self.image.documentation, &style).height * figure::CELL_HEIGHT
+        };
+        (0..file.rungs.len()).map(height).collect()
+    }
+
+    fn data(&self, label: &str, from: usize, count: usize) -> Option<DataView> {
+        let file = files(self.image).find(|file| file.label().eq_ignore_ascii_case(label))?;
+        let last = elements(file).min(from.saturating_add(count));
+        let element = |index: usize| {
+            let address = match file.file_type.has_slots() {
+                true => self.image.io.address_of(file.file_type, u16::try_from(index).ok()?)?,
+                false => Address::element(file.file_type, file.number, u16::try_from(index).ok()?),
+            };
+            let (symbol, description) = self.documented(&address);
+            Some(ElementView { address: address.to_string(), symbol, description })
+        };
+        let columns: &[&str] = match file.file_type {
+            FileType::T => &["/EN", "/TT", "/DN", ".PRE", ".ACC"],
+            FileType::C => &["/CU", "/CD", "/DN", "/OV", "/UN", "/UA", ".PRE", ".ACC"],
+            FileType::R => &["/EN", "/EU", "/DN", "/EM", "/ER", "/UL", "/IN", "/FD", ".LEN", ".POS"],
+            _ => &[""],
+        };
+        Some(DataView {
+            label: file.label(),
+            columns: columns.iter().map(|column| (*column).to_owned()).collect(),
+            radix: match file.file_type {
+                FileType::B | FileType::I | FileType::O | FileType::S => "binary",
+                _ => "decimal",
+            },
+            elements: (from..last).filter_map(element).collect(),
+        })
+    }
+
+    fn uses(&self, text: &str) -> Result<UsesView, String> {
+        let symbol = || self.image.documentation.by_symbol(text)?.target.direct_address().cloned();
+        let address = Address::parse(text).ok().or_else(symbol);
+        let address = address.ok_or_else(|| format!("`{text}` is no address or symbol of this program"))?;
+        let (symbol, description) = self.documented(&address);
+        let all = self.xref.of(&address);
+        let uses = all.iter().take(LISTED).map(|access| UseView {
+            routine: access.location.file,
+            rung: access.location.rung as usize,
+            instruction: Some(access.location.instruction as usize),
+            text: format!("{} {}", access.mnemonic, access.address),
+            access: access.role.as_str().to_owned(),
+        });
+        Ok(UsesView {
+            address: address.to_string(),
+            symbol,
+            description,
+            uses: uses.collect(),
+            left_out: all.len().saturating_sub(LISTED),
+        })
+    }
+
+    fn search(&self, text: &str) -> Result<HitsView, String> {
+        let found = search(self.image, &self.image.documentation, &Query::new(text));
+        let hits = found.list.iter().take(LISTED).map(|hit| HitView {
+            routine: hit.location.map(|location| location.file),
+            rung: hit.location.map(|location| location.rung as usize),
+            kind: hit.kind.to_owned(),
+            text: hit.text.clone(),
+        });
+        Ok(HitsView { hits: hits.collect(), left_out: found.list.len().saturating_sub(LISTED) + found.not_listed })
+    }
+}
+
+/// An instruction with what a page shows of it.
+fn instruction(image: &Image, instruction: &Instruction) -> InstructionView {
+    let direct = |operand: &Operand| operand.address().filter(|address| address.is_direct()).cloned();
+    let known = instruction.mnemonic.name().and_then(instr::by_mnemonic);
+    let form = known.and_then(|known| known.form_for(image.family(), instruction.operands.len()));
+    let mut values = Vec::new();
+    let mut element: Option<Address> = None;
+    for (index, operand) in instruction.operands.iter().enumerate() {
+        let kind = form.and_then(|form| form.operands.get(index)).map(|operand| operand.kind);
+        let member = match kind {
+            Some(Kind::Preset) => Some("PRE"),
+            Some(Kind::Accum) => Some("ACC"),
+            Some(Kind::Length) => Some("LEN"),
+            Some(Kind::Position) => Some("POS"),
+            _ => None,
+        };
+        if matches!(kind, Some(Kind::Timer | Kind::Counter | Kind::Control)) {
+            element = direct(operand).filter(|address| address.word.is_none());
+        }
+        match (member, &element, direct(operand)) {
+            (Some(member), Some(element), _) => {
+                values.push(ValueView { address: format!("{element}.{member}"), operand: index, instead: true });
+            }
+            (_, _, Some(address)) if address.bit.is_none() => {
+                let address = Address { indexed: false, ..address }.to_string();
+                values.push(ValueView { address, operand: index, instead: false });
+            }
+            _ => {}
+        }
+    }
+    let sign = form.is_some_and(|form| !matches!(form.drawing, Drawing::Box { .. }));
+    let bit = instruction.operands.first().and_then(direct).filter(|address| sign && address.bit.is_some());
+    InstructionView {
+        mnemonic: instruction.mnemonic.to_string(),
+        operands: instruction.operands.iter().map(ToString::to_string).collect(),
+        values,
+        forcible: bit.as_ref().is_some_and(|address| address.file_type.has_slots()),
+        bit: bit.map(|address| address.to_string()),
+    }
+}

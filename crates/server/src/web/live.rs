@@ -1,0 +1,131 @@
+//! Live updates: what a browser looks at, when it changes.
+//!
+//! A browser says which rungs and values it shows; with every frame it gets those that are not what it was told
+//! last. Nothing queues up: a browser that is slow gets the newest frame when it is ready for one, and one that
+//! comes back says again what it shows and is told everything.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::response::Response;
+use serde::{Deserialize, Serialize};
+use tokio::sync::{Semaphore, watch};
+
+use super::problem::Problem;
+use super::{Served, Status, json_value};
+use crate::engine::Frame;
+
+/// Rungs and values of one browser.
+const RUNGS: usize = 500;
+const VALUES: usize = 5000;
+
+/// Longest message of a browser, bytes.
+const MESSAGE: usize = 256 << 10;
+
+/// Browsers at once.
+pub(super) const BROWSERS: usize = 200;
+
+/// What a browser shows.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct See {
+    /// Rungs: routine and number.
+    #[serde(default)]
+    rungs: Vec<(u16, u16)>,
+    /// Addresses.
+    #[serde(default)]
+    values: Vec<String>,
+}
+
+/// What a browser is told.
+#[derive(Debug, Serialize)]
+struct Told<'a> {
+    frame: u64,
+    status: &'a Status,
+    /// By `routine:rung`, a hexadecimal digit for every instruction: 1 executed, 2 power before it, 4 power behind it,
+    /// 8 changed in this scan.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    rungs: BTreeMap<String, String>,
+    /// By address; `null` where there is no such value.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    values: BTreeMap<&'a str, serde_json::Value>,
+}
+
+/// What was told last.
+#[derive(Default)]
+struct Known {
+    rungs: BTreeMap<(u16, u16), Vec<u8>>,
+    values: BTreeMap<String, serde_json::Value>,
+}
+
+pub(super) async fn live(State(served): State<Served>, upgrade: WebSocketUpgrade) -> Result<Response, Problem> {
+    let places: Arc<Semaphore> = Arc::clone(&served.browsers);
+    let place = places.try_acquire_owned();
+    let place =
+        place.map_err(|_| Problem::new(axum::http::StatusCode::SERVICE_UNAVAILABLE, "too many pages are open"))?;
+    Ok(upgrade.max_message_size(MESSAGE).max_frame_size(MESSAGE).on_upgrade(async move |socket| {
+        let frames = served.engine.frames();
+        // A page that is gone needs no farewell.
+        let _ = follow(socket, frames, &served).await;
+        drop(place);
+    }))
+}
+
+async fn follow(
+    mut socket: WebSocket,
+    mut frames: watch::Receiver<Arc<Frame>>,
+    served: &Served,
+) -> Result<(), axum::Error> {
+    let mut see = See::default();
+    let mut known = Known::default();
+    frames.mark_changed();
+    loop {
+        tokio::select! {
+            message = socket.recv() => match message {
+                Some(Ok(Message::Text(text))) => match serde_json::from_str::<See>(&text) {
+                    Ok(asked) if asked.rungs.len() <= RUNGS && asked.values.len() <= VALUES => {
+                        known = Known::default();
+                        see = asked;
+                        frames.mark_changed();
+                    }
+                    _ => return socket.send(Message::Close(None)).await,
+                },
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
+                Some(Ok(_)) => {}
+            },
+            changed = frames.changed() => {
+                if changed.is_err() {
+                    return socket.send(Message::Close(None)).await;
+                }
+                let frame = Arc::clone(&frames.borrow_and_update());
+                let text = tell(&frame, &see, &mut known, served);
+                socket.send(Message::Text(text.into())).await?;
+            }
+        }
+    }
+}
+
+fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String {
+    let status = Status::of(&frame.status, served);
+    let mut told = Told { frame: frame.number, status: &status, rungs: BTreeMap::new(), values: BTreeMap::new() };
+    for rung in &see.rungs {
+        let bits = frame.flow.rung(rung.0, rung.1);
+        if known.rungs.get(rung).is_none_or(|last| last != bits) {
+            let digits = bits.iter().filter_map(|bits| char::from_digit(u32::from(bits & 15), 16)).collect();
+            told.rungs.insert(format!("{}:{}", rung.0, rung.1), digits);
+            known.rungs.insert(*rung, bits.to_vec());
+        }
+    }
+    for address in &see.values {
+        let value =
+            frame.machine.controller().read(address).map_or(serde_json::Value::Null, |value| json_value(&value));
+        if known.values.get(address) != Some(&value) {
+            known.values.insert(address.clone(), value.clone());
+            told.values.insert(address, value);
+        }
+    }
+    // Keys are texts and values plain: there is nothing that JSON cannot say.
+    serde_json::to_string(&told).unwrap_or_default()
+}

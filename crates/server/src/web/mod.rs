@@ -1,0 +1,181 @@
+//! The web server: routes, what stands before them, and what a browser gets.
+
+mod control;
+mod guard;
+mod live;
+mod pages;
+mod problem;
+mod read;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::middleware;
+use axum::routing::{get, post};
+use ladder::Value;
+use serde::Serialize;
+use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
+
+use crate::engine::{self, Handle, Pace};
+use crate::view::Program;
+use guard::Guard;
+
+/// Longest body of a request: a plant file.
+const BODY: usize = 256 << 10;
+
+/// What all routes share.
+#[derive(Clone)]
+pub(crate) struct Served {
+    engine: Handle,
+    program: Arc<dyn Program>,
+    browsers: Arc<Semaphore>,
+    read_only: bool,
+}
+
+/// How a program is served.
+#[derive(Clone, Debug, Default)]
+pub struct Access {
+    /// All who ask must give this token. Needed on addresses other than loopback.
+    pub token: Option<String>,
+    /// Nothing can be changed.
+    pub read_only: bool,
+}
+
+/// Serves a program until `ended` is done.
+///
+/// # Errors
+/// The listener has no address or fails for good; it listens beyond loopback and there is no token.
+pub async fn serve(
+    listener: TcpListener,
+    engine: Handle,
+    program: Arc<dyn Program>,
+    access: Access,
+    ended: impl Future<Output = ()> + Send + 'static,
+) -> std::io::Result<()> {
+    let bound = listener.local_addr()?;
+    if !bound.ip().is_loopback() && access.token.is_none() {
+        return Err(std::io::Error::other("a server that others can reach needs a token"));
+    }
+    let served =
+        Served { engine, program, browsers: Arc::new(Semaphore::new(live::BROWSERS)), read_only: access.read_only };
+    let guard = Arc::new(Guard::new(bound, access.token, access.read_only));
+    let routes = router(served, guard).into_make_service_with_connect_info::<SocketAddr>();
+    axum::serve(listener, routes).with_graceful_shutdown(ended).await
+}
+
+fn router(served: Served, guard: Arc<Guard>) -> Router {
+    Router::new()
+        .route("/api/project", get(read::project))
+        .route("/api/state", get(read::state))
+        .route("/api/routines/{routine}/rungs", get(read::rungs))
+        .route("/api/routines/{routine}/heights", get(read::heights))
+        .route("/api/data/{file}", get(read::data))
+        .route("/api/uses", get(read::uses))
+        .route("/api/search", get(read::search))
+        .route("/api/trend", get(read::trend).post(control::follow))
+        .route("/api/control", post(control::control))
+        .route("/api/write", post(control::write))
+        .route("/api/force", post(control::force))
+        .route("/api/record", post(control::record))
+        .route("/api/live", get(live::live))
+        .route("/api/openapi.json", get(pages::openapi))
+        .route("/", get(pages::index))
+        .route("/assets/{name}", get(pages::asset))
+        .fallback(pages::missing)
+        .method_not_allowed_fallback(pages::wrong_method)
+        .layer(DefaultBodyLimit::max(BODY))
+        .layer(middleware::from_fn_with_state(guard, guard::guard))
+        .with_state(served)
+}
+
+/// The state of the run, as browsers get it.
+#[derive(Debug, Serialize)]
+pub(crate) struct Status {
+    /// `paused`, `run` or `fast`.
+    pace: &'static str,
+    /// Times real time, while `run`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    speed: Option<f64>,
+    mode: &'static str,
+    scans: u64,
+    /// Simulated seconds.
+    time: f64,
+    /// Milliseconds from one scan to the next.
+    scan_ms: f64,
+    fault: Option<String>,
+    /// Routine and rung.
+    fault_site: Option<(u16, u16)>,
+    forces: Vec<(String, bool)>,
+    forces_enabled: bool,
+    /// Scans that can be gone back.
+    depth: u64,
+    snapshots: Vec<String>,
+    /// Scans recorded, while a recording is in progress.
+    recording: Option<u64>,
+    slow: bool,
+    ended: Option<String>,
+    plant: Option<PlantStatus>,
+    read_only: bool,
+}
+
+/// A plant in figures.
+#[derive(Debug, Serialize)]
+pub(crate) struct PlantStatus {
+    name: String,
+    wrong: Option<String>,
+    /// Element, quantity, value, unit.
+    gauges: Vec<(String, String, f64, &'static str)>,
+}
+
+impl Status {
+    fn of(status: &engine::Status, served: &Served) -> Status {
+        let (pace, speed) = match status.pace {
+            Pace::Paused => ("paused", None),
+            Pace::RealTime(speed) => ("run", Some(speed)),
+            Pace::Fast => ("fast", None),
+        };
+        let gauges = |gauges: &[crate::plant::Gauge]| {
+            gauges.iter().map(|it| (it.element.clone(), it.quantity.clone(), it.value, it.unit)).collect()
+        };
+        Status {
+            pace,
+            speed,
+            mode: status.mode,
+            scans: status.scans,
+            time: status.time.as_secs_f64(),
+            scan_ms: status.scan_time.as_secs_f64() * 1000.0,
+            fault: status.fault.clone(),
+            fault_site: status.fault_site,
+            forces: status.forces.clone(),
+            forces_enabled: status.forces_enabled,
+            depth: status.depth,
+            snapshots: status.snapshots.clone(),
+            recording: status.recording,
+            slow: status.slow,
+            ended: status.ended.clone(),
+            plant: status.plant.as_ref().map(|plant| PlantStatus {
+                name: plant.name.clone(),
+                wrong: plant.wrong.clone(),
+                gauges: gauges(&plant.gauges),
+            }),
+            read_only: served.read_only,
+        }
+    }
+}
+
+/// A value as browsers get it: bits as 0 and 1, whole elements as nothing.
+fn json_value(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Bit(on) => u8::from(*on).into(),
+        Value::Word(word) => (*word).into(),
+        Value::Long(long) => (*long).into(),
+        // JSON has no infinity.
+        Value::Float(number) if !number.is_finite() => number.to_string().into(),
+        Value::Float(number) => ladder::format_float(*number).parse::<f64>().unwrap_or(f64::from(*number)).into(),
+        Value::Text(text) => text.as_str().into(),
+        _ => serde_json::Value::Null,
+    }
+}

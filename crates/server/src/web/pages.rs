@@ -1,0 +1,51 @@
+//! The pages themselves: files that are part of the program.
+
+use axum::extract::Path;
+use axum::http::header::CONTENT_TYPE;
+use axum::http::{StatusCode, Uri};
+use axum::response::{IntoResponse, Response};
+
+use super::problem::Problem;
+
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const STYLE: &str = "text/css; charset=utf-8";
+
+/// Name, type and content of everything a page loads.
+const ASSETS: &[(&str, &str, &str)] = &[
+    ("api.js", SCRIPT, include_str!("../../assets/api.js")),
+    ("detail.js", SCRIPT, include_str!("../../assets/detail.js")),
+    ("dom.js", SCRIPT, include_str!("../../assets/dom.js")),
+    ("ladder.js", SCRIPT, include_str!("../../assets/ladder.js")),
+    ("main.js", SCRIPT, include_str!("../../assets/main.js")),
+    ("palette.js", SCRIPT, include_str!("../../assets/palette.js")),
+    ("run.js", SCRIPT, include_str!("../../assets/run.js")),
+    ("tables.js", SCRIPT, include_str!("../../assets/tables.js")),
+    ("trend.js", SCRIPT, include_str!("../../assets/trend.js")),
+    ("values.js", SCRIPT, include_str!("../../assets/values.js")),
+    ("style.css", STYLE, include_str!("../../assets/style.css")),
+    ("rungs.css", STYLE, render::svg::STYLE),
+];
+
+pub(super) async fn index() -> Response {
+    ([(CONTENT_TYPE, HTML)], include_str!("../../assets/index.html")).into_response()
+}
+
+pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
+    let found = ASSETS.iter().find(|asset| asset.0 == name);
+    let (_, kind, content) = found.ok_or_else(|| Problem::missing("there is no such file"))?;
+    Ok(([(CONTENT_TYPE, *kind)], *content).into_response())
+}
+
+/// What the API offers, in the form tools read.
+pub(super) async fn openapi() -> Response {
+    ([(CONTENT_TYPE, "application/json")], include_str!("../../assets/openapi.json")).into_response()
+}
+
+pub(super) async fn missing(uri: Uri) -> Problem {
+    Problem::missing(format!("there is nothing at {}", uri.path()))
+}
+
+pub(super) async fn wrong_method() -> Problem {
+    Problem::new(StatusCode::METHOD_NOT_ALLOWED, "this address does not take that method")
+}

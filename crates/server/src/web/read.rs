@@ -1,0 +1,154 @@
+//! Requests that only look.
+
+use axum::Json;
+use axum::extract::rejection::{PathRejection, QueryRejection};
+use axum::extract::{Path, Query, State};
+use serde::{Deserialize, Serialize};
+use tokio::task::spawn_blocking;
+
+use super::problem::Problem;
+use super::{Served, Status};
+use crate::view::{DataView, HitsView, Outline, RungView, UsesView};
+
+type Answer<T> = Result<Json<T>, Problem>;
+type Asked<T> = Result<Query<T>, QueryRejection>;
+type Named<T> = Result<Path<T>, PathRejection>;
+
+/// Rungs and elements of one answer.
+const RUNGS: usize = 200;
+const ELEMENTS: usize = 1000;
+
+/// Longest text that is searched for.
+const TEXT: usize = 500;
+
+pub(super) async fn project(State(served): State<Served>) -> Json<Outline> {
+    Json(served.program.outline().clone())
+}
+
+pub(super) async fn state(State(served): State<Served>) -> Json<Status> {
+    let frame = std::sync::Arc::clone(&served.engine.frames().borrow());
+    Json(Status::of(&frame.status, &served))
+}
+
+/// A stretch of rungs or elements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Stretch {
+    /// The first.
+    #[serde(default)]
+    from: usize,
+    /// How many.
+    count: Option<usize>,
+    /// Columns of a drawing.
+    width: Option<usize>,
+}
+
+pub(super) async fn rungs(
+    State(served): State<Served>,
+    routine: Named<u16>,
+    asked: Asked<Stretch>,
+) -> Answer<Vec<RungView>> {
+    let (Path(routine), Query(Stretch { from, count, width })) = (routine?, asked?);
+    let outline = served.program.outline();
+    let Some(found) = outline.routines.iter().find(|it| it.number == routine) else {
+        return Err(Problem::missing(format!("there is no program file or code block {routine}")));
+    };
+    let last = found.rungs.min(from.saturating_add(count.unwrap_or(50).min(RUNGS)));
+    let width = width.unwrap_or(100);
+    let program = served.program;
+    let drawn = spawn_blocking(move || (from..last).filter_map(|index| program.rung(routine, index, width)).collect());
+    Ok(Json(drawn.await.map_err(broken)?))
+}
+
+/// Columns of a drawing.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Width {
+    width: Option<usize>,
+}
+
+pub(super) async fn heights(
+    State(served): State<Served>,
+    routine: Named<u16>,
+    asked: Asked<Width>,
+) -> Answer<Vec<usize>> {
+    let (Path(routine), Query(Width { width })) = (routine?, asked?);
+    let heights = spawn_blocking(move || served.program.heights(routine, width.unwrap_or(100)));
+    Ok(Json(heights.await.map_err(broken)?))
+}
+
+/// A task that was cancelled: the server ends.
+fn broken(why: tokio::task::JoinError) -> Problem {
+    Problem::new(axum::http::StatusCode::SERVICE_UNAVAILABLE, why.to_string())
+}
+
+pub(super) async fn data(State(served): State<Served>, file: Named<String>, asked: Asked<Stretch>) -> Answer<DataView> {
+    let (Path(file), Query(Stretch { from, count, .. })) = (file?, asked?);
+    let view = served.program.data(&file, from, count.unwrap_or(200).min(ELEMENTS));
+    view.map(Json).ok_or_else(|| Problem::missing(format!("there is no data file {file}")))
+}
+
+/// An address or symbol.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Of {
+    address: String,
+}
+
+pub(super) async fn uses(State(served): State<Served>, asked: Asked<Of>) -> Answer<UsesView> {
+    let Query(Of { address }) = asked?;
+    let found = spawn_blocking(move || served.program.uses(&address)).await.map_err(broken)?;
+    found.map(Json).map_err(Problem::missing)
+}
+
+/// A text to search for.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct For {
+    q: String,
+}
+
+pub(super) async fn search(State(served): State<Served>, asked: Asked<For>) -> Answer<HitsView> {
+    let Query(For { q }) = asked?;
+    if q.trim().is_empty() || q.len() > TEXT {
+        return Err(Problem::refused(format!("expected a text of 1 to {TEXT} bytes, found {}", q.len())));
+    }
+    let found = spawn_blocking(move || served.program.search(&q)).await.map_err(broken)?;
+    found.map(Json).map_err(Problem::refused)
+}
+
+/// From which scan on.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Since {
+    #[serde(default)]
+    since: u64,
+}
+
+/// The traces that are followed.
+#[derive(Debug, Serialize)]
+pub(super) struct Trend {
+    traces: Vec<Trace>,
+}
+
+#[derive(Debug, Serialize)]
+struct Trace {
+    address: String,
+    /// Points that were forgotten because there were too many.
+    forgotten: u64,
+    /// Scan, simulated seconds, value from there on.
+    points: Vec<(u64, f64, f64)>,
+}
+
+pub(super) async fn trend(State(served): State<Served>, asked: Asked<Since>) -> Answer<Trend> {
+    let Query(Since { since }) = asked?;
+    let traces = served.engine.ask(move |engine| {
+        let trace = |trace: &crate::workbench::trend::Trace| Trace {
+            address: trace.address.clone(),
+            forgotten: trace.forgotten(),
+            points: trace.since(since).map(|point| (point.scan, point.time as f64 / 1e9, point.value)).collect(),
+        };
+        engine.bench.traces().iter().map(trace).collect()
+    });
+    Ok(Json(Trend { traces: traces.await? }))
+}

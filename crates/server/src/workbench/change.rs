@@ -1,0 +1,43 @@
+//! What a person or a plant model does to a machine between two scans.
+
+use ladder::Value;
+
+use crate::plant::Plant;
+
+/// A change of a machine that is not a scan.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// A value was written.
+    Write {
+        /// Where, as a text of the dialect.
+        address: String,
+        /// What.
+        value: Value,
+    },
+    /// A force was installed or removed.
+    Force {
+        /// The bit.
+        address: String,
+        /// Its state, `None` when removed.
+        state: Option<bool>,
+    },
+    /// All forces were enabled or disabled.
+    EnableForces(bool),
+    /// Another mode was chosen.
+    Mode(ModeChange),
+    /// The controller was wired to a plant, or to none.
+    Plant(Option<Box<Plant>>),
+}
+
+/// A mode a person can choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModeChange {
+    /// Does not execute.
+    Program,
+    /// Executes.
+    Run,
+    /// Executes, output terminals stay off.
+    Test,
+    /// Power is lost and comes back.
+    PowerCycle,
+}

@@ -1,0 +1,156 @@
+//! What was done on the workbench, as a scenario that replays it.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use ladder::Value;
+use sim::scenario::spell::{duration, literal, quoted};
+
+use super::change::{Change, ModeChange};
+
+/// Steps of one recording.
+const STEPS: usize = 100_000;
+
+/// A recording that began with the data of the project, in program mode.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder {
+    steps: Vec<Step>,
+    /// What a scenario cannot say, in words.
+    notes: Vec<String>,
+    full: bool,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Step {
+    program_run: bool,
+    sets: Vec<(String, Value)>,
+    dt: Duration,
+    scans: u64,
+    expect: Vec<(String, Value)>,
+}
+
+/// How a recording names its program.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Subject {
+    /// What the scenario shows.
+    pub name: String,
+    /// Path of the program as the scenario spells it.
+    pub program: String,
+    /// `family` of the scenario, where it needs one.
+    pub family: Option<String>,
+}
+
+impl Recorder {
+    /// A change was made before the next scan.
+    pub fn changed(&mut self, change: &Change) {
+        let before = self.scans() > 0;
+        // A change behind an expectation is another step, as one behind a scan.
+        let begun = self.steps.last().is_some_and(|step| step.scans == 0 && step.expect.is_empty());
+        if !begun {
+            if self.steps.len() == STEPS {
+                self.full = true;
+                return;
+            }
+            self.steps.push(Step::default());
+        }
+        let Some(step) = self.steps.last_mut() else { return };
+        match change {
+            Change::Write { address, value } => {
+                step.sets.retain(|(other, _)| other != address);
+                step.sets.push((address.clone(), value.clone()));
+            }
+            Change::Mode(ModeChange::Run) => step.program_run = before,
+            // What a plant writes is recorded as written.
+            Change::Mode(ModeChange::Program) | Change::Plant(_) => {}
+            Change::Mode(ModeChange::Test) => self.note("test mode: a scenario runs in run mode"),
+            Change::Mode(ModeChange::PowerCycle) => {
+                step.program_run = true;
+                self.note("a power cycle: the scenario leaves and enters run instead");
+            }
+            Change::Force { address, .. } => self.note(&format!("a force of {address}: a scenario has no forces")),
+            Change::EnableForces(_) => self.note("forces enabled or disabled: a scenario has no forces"),
+        }
+    }
+
+    /// A scan was run.
+    pub fn scanned(&mut self, dt: Duration) {
+        let full = self.steps.len() == STEPS;
+        match self.steps.last_mut() {
+            // The first scan of run passes no time, whatever the step says.
+            Some(last) if last.expect.is_empty() && (last.scans == 0 || last.dt.is_zero() || last.dt == dt) => {
+                last.scans += 1;
+                last.dt = dt;
+            }
+            _ if full => self.full = true,
+            _ => self.steps.push(Step { dt, scans: 1, ..Step::default() }),
+        }
+    }
+
+    /// Scans recorded.
+    pub fn scans(&self) -> u64 {
+        self.steps.iter().map(|step| step.scans).sum()
+    }
+
+    /// These values are expected here.
+    pub fn expect(&mut self, values: impl IntoIterator<Item = (String, Value)>) {
+        if self.steps.is_empty() {
+            self.steps.push(Step::default());
+        }
+        let Some(step) = self.steps.last_mut() else { return };
+        for (address, value) in values {
+            step.expect.retain(|(other, _)| *other != address);
+            step.expect.push((address, value));
+        }
+    }
+
+    /// What the scenario does not say although it was done, in words.
+    pub fn notes(&self) -> impl Iterator<Item = &str> {
+        let full = self.full.then_some("the recording is full: what came later is not in it");
+        self.notes.iter().map(String::as_str).chain(full)
+    }
+
+    /// The scenario.
+    pub fn to_text(&self, subject: &Subject) -> String {
+        let mut text = String::new();
+        for note in self.notes() {
+            let _ = writeln!(text, "# Not in this scenario: {}", note.replace(char::is_control, " "));
+        }
+        let _ = writeln!(text, "name = {}", quoted(&subject.name));
+        let _ = writeln!(text, "program = {}", quoted(&subject.program));
+        if let Some(family) = &subject.family {
+            let _ = writeln!(text, "family = {}", quoted(family));
+        }
+        let usual = self.steps.iter().max_by_key(|step| step.scans).map(|step| step.dt).filter(|dt| !dt.is_zero());
+        let usual = usual.unwrap_or(Duration::from_millis(10));
+        let _ = writeln!(text, "scan = {}", duration(usual));
+        for step in &self.steps {
+            let _ = writeln!(text, "\n[[step]]");
+            if step.program_run {
+                let _ = writeln!(text, "mode = \"program-run\"");
+            }
+            table(&mut text, "set", &step.sets);
+            if step.scans > 0 {
+                if step.dt != usual && !step.dt.is_zero() {
+                    let _ = writeln!(text, "scan = {}", duration(step.dt));
+                }
+                let _ = writeln!(text, "scans = {}", step.scans);
+            }
+            table(&mut text, "expect", &step.expect);
+        }
+        text
+    }
+
+    fn note(&mut self, text: &str) {
+        if !self.notes.iter().any(|note| note == text) {
+            self.notes.push(text.to_owned());
+        }
+    }
+}
+
+fn table(text: &mut String, key: &str, values: &[(String, Value)]) {
+    let pair = |(address, value): &(String, Value)| Some(format!("{} = {}", quoted(address), literal(value)?));
+    let pairs: Vec<String> = values.iter().filter_map(pair).collect();
+    if !pairs.is_empty() {
+        let _ = writeln!(text, "{key} = {{ {} }}", pairs.join(", "));
+    }
+}

@@ -1,0 +1,159 @@
+//! The machine on the workbench: one interface for every dialect.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use ladder::{Address, Image, Value};
+use sim::scenario::Controller;
+use sim::{Mode, PowerFlow, Trace};
+
+use super::flow::Flow;
+
+/// A simulated machine that can be copied, watched and forced.
+pub trait Subject: Send + Sync {
+    /// What every dialect can do.
+    fn controller(&self) -> &dyn Controller;
+    /// The same, to change it.
+    fn controller_mut(&mut self) -> &mut dyn Controller;
+    /// A second machine in the same state.
+    fn fork(&self) -> Box<dyn Subject>;
+    /// Room for its power flow.
+    fn flow(&self) -> Flow;
+    /// Time passes, then one scan runs, forces applied.
+    fn scan(&mut self, dt: Duration);
+    /// The same, noting the power flow.
+    fn scan_watched(&mut self, dt: Duration, flow: &mut Flow);
+    /// The mode in a word: `program`, `run`, `test`, `suspend` or `fault`.
+    fn mode(&self) -> &'static str;
+    /// Goes to continuous test mode: the program runs, output terminals stay off.
+    ///
+    /// # Errors
+    /// The controller has no such mode.
+    fn enter_test(&mut self) -> Result<(), String>;
+    /// Power is lost and comes back.
+    fn power_cycle(&mut self);
+    /// Where the fault stands that has stopped it: routine and rung.
+    fn fault_site(&self) -> Option<(u16, u16)>;
+    /// Installs or removes a force.
+    ///
+    /// # Errors
+    /// The address cannot be forced.
+    fn force(&mut self, address: &str, state: Option<bool>) -> Result<(), String>;
+    /// Enables or disables all forces.
+    ///
+    /// # Errors
+    /// The controller has no forces.
+    fn enable_forces(&mut self, on: bool) -> Result<(), String>;
+    /// Installed forces act.
+    fn forces_enabled(&self) -> bool;
+    /// What an output terminal carries, forces applied; `None` for an address that is no output.
+    fn terminal(&self, address: &str) -> Option<Value>;
+}
+
+/// An SLC 500 or MicroLogix machine.
+pub struct Slc {
+    machine: sim::Machine,
+    /// Instructions of the rungs of each program file.
+    shape: Arc<Vec<(u16, Vec<usize>)>>,
+}
+
+impl Slc {
+    /// The machine of an image, in program mode.
+    pub fn new(machine: sim::Machine, image: &Image) -> Slc {
+        let rungs = |file: &ladder::ProgramFile| file.rungs.iter().map(|rung| rung.instructions().count()).collect();
+        let shape = image.ladder_files().map(|file| (file.number, rungs(file))).collect();
+        Slc { machine, shape: Arc::new(shape) }
+    }
+}
+
+impl Subject for Slc {
+    fn controller(&self) -> &dyn Controller {
+        &self.machine
+    }
+
+    fn controller_mut(&mut self) -> &mut dyn Controller {
+        &mut self.machine
+    }
+
+    fn fork(&self) -> Box<dyn Subject> {
+        Box::new(Slc { machine: self.machine.fork(), shape: Arc::clone(&self.shape) })
+    }
+
+    fn flow(&self) -> Flow {
+        Flow::new(self.shape.iter().cloned())
+    }
+
+    fn scan(&mut self, dt: Duration) {
+        self.machine.scan(dt);
+    }
+
+    fn scan_watched(&mut self, dt: Duration, flow: &mut Flow) {
+        flow.begin();
+        self.machine.scan_traced(dt, &mut Watching(flow));
+    }
+
+    fn mode(&self) -> &'static str {
+        match self.machine.mode() {
+            Mode::Program => "program",
+            Mode::Run => "run",
+            Mode::Test => "test",
+            Mode::Suspend => "suspend",
+            Mode::Fault => "fault",
+        }
+    }
+
+    fn enter_test(&mut self) -> Result<(), String> {
+        self.machine.enter_test();
+        Ok(())
+    }
+
+    /// The data table is kept; a controller that ran runs again, with prescan and first pass.
+    fn power_cycle(&mut self) {
+        let mode = self.machine.mode();
+        self.machine.enter_program();
+        match mode {
+            Mode::Run => self.machine.enter_run(),
+            Mode::Test => self.machine.enter_test(),
+            Mode::Program | Mode::Suspend | Mode::Fault => {}
+        }
+    }
+
+    fn fault_site(&self) -> Option<(u16, u16)> {
+        self.machine.fault().map(|fault| (fault.file, fault.rung))
+    }
+
+    fn force(&mut self, address: &str, state: Option<bool>) -> Result<(), String> {
+        let place = Address::parse(address).map_err(|why| why.to_string())?;
+        match self.machine.force(&place, state) {
+            true => Ok(()),
+            false => Err(format!("{address} is no input or output bit: only those can be forced")),
+        }
+    }
+
+    fn enable_forces(&mut self, on: bool) -> Result<(), String> {
+        self.machine.enable_forces(on);
+        Ok(())
+    }
+
+    /// S:1/5.
+    fn forces_enabled(&self) -> bool {
+        let enabled = Address::parse("S:1/5").ok().and_then(|address| self.machine.get(&address).ok());
+        enabled == Some(Value::Bit(true))
+    }
+
+    fn terminal(&self, address: &str) -> Option<Value> {
+        self.machine.output(&Address::parse(address).ok()?)
+    }
+}
+
+struct Watching<'a>(&'a mut Flow);
+
+impl Trace for Watching<'_> {
+    fn wants(&self, _: u16, _: u16) -> bool {
+        true
+    }
+
+    fn flow(&mut self, flow: PowerFlow) {
+        self.0.saw(flow.file, flow.rung, flow.instruction, flow.before, flow.after);
+    }
+}

@@ -1,0 +1,250 @@
+//! The server as a browser and as an attacker meet it.
+
+mod support;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use futures_util::{SinkExt, StreamExt};
+use ladder::Project;
+use serde_json::{Value, json};
+use server::view::SlcProgram;
+use server::workbench::{Slc, Workbench};
+use server::{Access, engine};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpStream};
+use tokio_tungstenite::tungstenite::Message;
+
+const LADDER: &[&str] =
+    &["XIC I:0.0/0 TON T4:0 0.01 100 0", "XIC T4:0/DN OTE O:0.0/0", "AND N7:0 1023 N7:0", "ADD N7:0 1 N7:0"];
+
+/// A server on a free port of this machine, for the time of a test.
+async fn serve(access: Access) -> SocketAddr {
+    let image = support::image(LADDER);
+    let options = sim::Options { inline: true, ..sim::Options::default() };
+    let program = sim::Program::compile(&image, &options).expect("compiles");
+    let machine = Slc::new(sim::Machine::new(program), &image);
+    let project = Project { main: image, ..Project::default() };
+    let view = SlcProgram::new("test.RSS".to_owned(), project, Vec::new());
+    let listener = TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+    let address = listener.local_addr().expect("bound");
+    let handle = engine::start(Workbench::new(Box::new(machine))).expect("a thread");
+    tokio::spawn(server::serve(listener, handle, Arc::new(view), access, std::future::pending()));
+    address
+}
+
+/// One request with these header lines; answers status, head and body.
+async fn ask(at: SocketAddr, first: &str, headers: &str, body: &str) -> (u16, String, String) {
+    let mut stream = TcpStream::connect(at).await.expect("listens");
+    let request =
+        format!("{first} HTTP/1.1\r\n{headers}Content-Length: {}\r\nConnection: close\r\n\r\n{body}", body.len());
+    stream.write_all(request.as_bytes()).await.expect("takes it");
+    let mut answer = Vec::new();
+    // A refused body may close the connection early.
+    let _ = stream.read_to_end(&mut answer).await;
+    let answer = String::from_utf8_lossy(&answer).into_owned();
+    let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
+    let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0);
+    (status, head.to_lowercase(), body.to_owned())
+}
+
+async fn get(at: SocketAddr, path: &str) -> (u16, Value) {
+    let (status, _, body) = ask(at, &format!("GET {path}"), &format!("Host: {at}\r\n"), "").await;
+    (status, serde_json::from_str(&body).unwrap_or(Value::Null))
+}
+
+async fn post(at: SocketAddr, path: &str, body: Value) -> (u16, Value) {
+    let headers = format!("Host: {at}\r\nContent-Type: application/json\r\n");
+    let (status, _, body) = ask(at, &format!("POST {path}"), &headers, &body.to_string()).await;
+    (status, serde_json::from_str(&body).unwrap_or(Value::Null))
+}
+
+#[tokio::test]
+async fn a_program_is_run_and_told() {
+    let at = serve(Access::default()).await;
+    assert_eq!(post(at, "/api/write", json!({"address": "I:0.0/0", "value": true})).await.0, 200);
+    assert_eq!(post(at, "/api/control", json!({"do": "scan", "count": 51})).await, (200, json!({"scans": 51})));
+    let (_, state) = get(at, "/api/state").await;
+    assert_eq!((&state["mode"], &state["scans"], &state["time"]), (&json!("run"), &json!(51), &json!(0.5)));
+    assert_eq!(post(at, "/api/control", json!({"do": "back", "count": 20})).await, (200, json!({"scans": 20})));
+    let until = json!({"do": "until", "address": "T4:0/DN", "relation": "=", "value": 1, "scans": 1000});
+    assert_eq!(post(at, "/api/control", until).await.0, 200);
+    let mut state = Value::Null;
+    for _ in 0..100 {
+        state = get(at, "/api/state").await.1;
+        if state["ended"] != Value::Null {
+            break;
+        }
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    assert_eq!((&state["ended"], &state["scans"]), (&json!("the condition holds"), &json!(101)));
+}
+
+#[tokio::test]
+async fn a_browser_is_told_what_it_shows_and_only_changes() {
+    let at = serve(Access::default()).await;
+    let (mut socket, _) = tokio_tungstenite::connect_async(format!("ws://{at}/api/live")).await.expect("upgrades");
+    let see = json!({"rungs": [[2, 0]], "values": ["T4:0.ACC", "N7:0", "N99:0"]});
+    let told = async |socket: &mut tokio_tungstenite::WebSocketStream<_>, wanted: &dyn Fn(&Value) -> bool| loop {
+        let message: Message = socket.next().await.expect("open").expect("sound");
+        let Message::Text(text) = message else { continue };
+        let value: Value = serde_json::from_str(&text).expect("JSON");
+        if wanted(&value) {
+            return value;
+        }
+    };
+    socket.send(Message::Text(see.to_string().into())).await.expect("sends");
+    let first = told(&mut socket, &|told| told["values"] != Value::Null).await;
+    assert_eq!(first["values"], json!({"T4:0.ACC": 0, "N7:0": 0, "N99:0": null}));
+    assert_eq!(first["rungs"], json!({"2:0": "00"}), "not executed yet");
+    post(at, "/api/write", json!({"address": "I:0.0/0", "value": 1})).await;
+    post(at, "/api/control", json!({"do": "scan", "count": 3})).await;
+    let next = told(&mut socket, &|told| told["status"]["scans"] == json!(3)).await;
+    assert_eq!(next["values"], json!({"T4:0.ACC": 2, "N7:0": 3}), "N99:0 has not changed");
+    assert_eq!(next["rungs"], json!({"2:0": "77"}));
+    post(at, "/api/force", json!({"address": "O:0.0/0", "state": true})).await;
+    let forced = told(&mut socket, &|told| told["status"]["forces"] != json!([])).await;
+    assert_eq!(forced["status"]["forces"], json!([["O:0.0/0", true]]));
+    assert_eq!(forced.get("values"), None, "nothing shown has changed");
+}
+
+#[tokio::test]
+async fn a_browser_that_does_not_read_keeps_nobody_waiting() {
+    let at = serve(Access::default()).await;
+    let (mut slow, _) = tokio_tungstenite::connect_async(format!("ws://{at}/api/live")).await.expect("upgrades");
+    slow.send(Message::Text(json!({"rungs": [[2, 0]], "values": ["N7:0"]}).to_string().into())).await.expect("sends");
+    post(at, "/api/control", json!({"do": "run", "speed": null})).await;
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    let (_, early) = get(at, "/api/state").await;
+    tokio::time::sleep(Duration::from_millis(300)).await;
+    let (_, late) = get(at, "/api/state").await;
+    assert!(late["scans"].as_u64() > early["scans"].as_u64().map(|scans| scans + 100), "{early} {late}");
+    assert_eq!(post(at, "/api/control", json!({"do": "pause"})).await.0, 200);
+}
+
+#[tokio::test]
+async fn other_origins_and_names_are_kept_out() {
+    let at = serve(Access::default()).await;
+    let status = async |headers: String| ask(at, "GET /api/state", &headers, "").await.0;
+    assert_eq!(status(format!("Host: {at}\r\n")).await, 200);
+    assert_eq!(status(format!("Host: localhost:{}\r\n", at.port())).await, 200);
+    assert_eq!(status("Host: plant.example:80\r\n".to_owned()).await, 403, "a name that was made to point here");
+    assert_eq!(status(format!("Host: {at}\r\nHost: {at}\r\n")).await, 403);
+    assert_eq!(status(format!("Host: {at}\r\nOrigin: http://{at}\r\n")).await, 200);
+    for origin in ["http://plant.example", "null", "https://127.0.0.1", "http://127.0.0.1"] {
+        assert_eq!(status(format!("Host: {at}\r\nOrigin: {origin}\r\n")).await, 403, "{origin}");
+    }
+    let (_, head, _) = ask(at, "OPTIONS /api/write", &format!("Host: {at}\r\n"), "").await;
+    assert!(!head.contains("access-control"), "{head}");
+    let upgrade = format!(
+        "Host: {at}\r\nOrigin: http://plant.example\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
+         Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+    );
+    assert_eq!(ask(at, "GET /api/live", &upgrade, "").await.0, 403);
+    // What a form of another page can send has no JSON type.
+    let form = format!("Host: {at}\r\nContent-Type: text/plain\r\n");
+    assert_eq!(ask(at, "POST /api/control", &form, "{\"do\":\"pause\"}").await.0, 415);
+}
+
+#[tokio::test]
+async fn a_token_opens_the_door_and_nothing_else() {
+    let at = serve(Access { token: Some("0123456789abcdef".to_owned()), read_only: false }).await;
+    let host = format!("Host: {at}\r\n");
+    assert_eq!(ask(at, "GET /", &host, "").await.0, 401);
+    assert_eq!(ask(at, "GET /?token=0123456789abcdee", &host, "").await.0, 401);
+    let (status, head, _) = ask(at, "GET /?token=0123456789abcdef", &host, "").await;
+    assert!(status == 303 && head.contains("httponly; samesite=strict"), "{head}");
+    assert_eq!(ask(at, "GET /", &format!("{host}Cookie: a=b; rungs-token=0123456789abcdef\r\n"), "").await.0, 200);
+    assert_eq!(ask(at, "GET /", &format!("{host}Authorization: Bearer 0123456789abcdef\r\n"), "").await.0, 200);
+    assert_eq!(ask(at, "GET /", &format!("{host}Authorization: Bearer 0123456789abcde\r\n"), "").await.0, 401);
+}
+
+#[tokio::test]
+async fn who_may_only_look_changes_nothing() {
+    let at = serve(Access { token: None, read_only: true }).await;
+    assert_eq!(get(at, "/api/state").await.1["read_only"], json!(true));
+    for (path, body) in [
+        ("/api/control", json!({"do": "restart"})),
+        ("/api/write", json!({"address": "N7:0", "value": 1})),
+        ("/api/force", json!({"address": "I:0.0/0", "state": true})),
+        ("/api/record", json!({"do": "start"})),
+        ("/api/trend", json!({"addresses": []})),
+    ] {
+        assert_eq!(post(at, path, body).await.0, 403, "{path}");
+    }
+}
+
+#[tokio::test]
+async fn what_makes_no_sense_is_refused_with_a_reason() {
+    let at = serve(Access::default()).await;
+    for (path, body, status) in [
+        ("/api/control", json!({"do": "dance"}), 422),
+        ("/api/control", json!({"do": "scan", "count": 1_000_000}), 422),
+        ("/api/control", json!({"do": "scan", "count": -1}), 422),
+        ("/api/control", json!({"do": "run", "speed": 0}), 422),
+        ("/api/control", json!({"do": "run", "speed": 1e300}), 422),
+        ("/api/control", json!({"do": "scan-time", "ms": -5}), 422),
+        ("/api/control", json!({"do": "scan-time", "ms": 1e300}), 422),
+        ("/api/control", json!({"do": "mode", "mode": "remote"}), 422),
+        ("/api/control", json!({"do": "resume", "name": "none"}), 422),
+        ("/api/control", json!({"do": "keep", "name": "x".repeat(300)}), 422),
+        ("/api/control", json!({"do": "plant", "text": "[[tank]]"}), 422),
+        ("/api/control", json!({"do": "until", "address": "N99:0", "relation": "=", "value": 0}), 422),
+        ("/api/write", json!({"address": "N7:0", "value": 70000}), 422),
+        ("/api/write", json!({"address": "N7:0", "value": "five"}), 422),
+        ("/api/write", json!({"address": "", "value": 1}), 422),
+        ("/api/force", json!({"address": "N7:0", "state": true}), 422),
+        ("/api/record", json!({"do": "stop", "name": "x"}), 422),
+        ("/api/trend", json!({"addresses": ["T4:0"]}), 422),
+        ("/api/nothing", json!({}), 404),
+        ("/api/state", json!({}), 405),
+    ] {
+        let (found, answer) = post(at, path, body.clone()).await;
+        assert_eq!(found, status, "{path} {body}: {answer}");
+        assert!(answer["error"].as_str().is_some_and(|why| !why.is_empty()), "{path} {body}: {answer}");
+    }
+    for path in [
+        "/api/uses?address=..%2F..",
+        "/api/data/N99",
+        "/api/routines/9/rungs",
+        "/api/routines/x/rungs",
+        "/assets/..%2Fmain.js",
+        "/api/search?q=",
+    ] {
+        let (status, answer) = get(at, path).await;
+        assert!((400..500).contains(&status) && answer["error"].is_string(), "{path}: {status} {answer}");
+    }
+    let long = json!({"do": "plant", "text": "#".repeat(1 << 20)});
+    assert_eq!(post(at, "/api/control", long).await.0, 413);
+}
+
+#[tokio::test]
+async fn one_address_cannot_ask_without_end() {
+    let at = serve(Access::default()).await;
+    let mut stream = TcpStream::connect(at).await.expect("listens");
+    let request = format!("GET /api/state HTTP/1.1\r\nHost: {at}\r\n\r\n");
+    stream.write_all(request.repeat(2100).as_bytes()).await.expect("takes it");
+    let mut seen = String::new();
+    let mut part = vec![0; 1 << 16];
+    while !seen.contains("429") {
+        let count = stream.read(&mut part).await.expect("reads");
+        assert!(count > 0, "closed");
+        seen.push_str(&String::from_utf8_lossy(&part[..count]));
+    }
+}
+
+#[tokio::test]
+async fn pages_load_nothing_from_elsewhere() {
+    let at = serve(Access::default()).await;
+    let host = format!("Host: {at}\r\n");
+    let (status, head, page) = ask(at, "GET /", &host, "").await;
+    assert_eq!(status, 200);
+    assert!(head.contains("content-security-policy: default-src 'none'") && head.contains("frame-ancestors 'none'"));
+    let named: Vec<&str> = page.split(['"', '\'']).filter(|part| part.starts_with("/assets/")).collect();
+    assert!(named.len() >= 3, "{named:?}");
+    for path in named {
+        assert_eq!(ask(at, &format!("GET {path}"), &host, "").await.0, 200, "{path}");
+    }
+    assert!(!page.contains("http://") && !page.contains("https://"));
+}

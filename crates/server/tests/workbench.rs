@@ -1,0 +1,225 @@
+//! The workbench without a browser: what is done, undone, kept and recorded.
+
+mod support;
+
+use std::time::Duration;
+
+use ladder::Value;
+use server::workbench::flow::{AFTER, BEFORE, CHANGED, EXECUTED};
+use server::workbench::{Change, Condition, ModeChange, Recorded, Relation, Subject, Workbench};
+use sim::scenario::{Literal, Scenario, play};
+use support::{machine, read};
+
+const LADDER: &[&str] = &[
+    "XIC I:0.0/0 TON T4:0 0.01 100 0",
+    "XIC T4:0/DN OTE O:0.0/0",
+    "XIC I:0.0/1 CTU C5:0 5 0",
+    "MOV N7:0 N7:1",
+    "BST XIC I:0.0/2 NXB XIC B3:0/0 BND XIO I:0.0/3 OTE B3:0/0",
+];
+
+fn bench() -> Workbench {
+    let mut bench = Workbench::new(Box::new(machine(LADDER)));
+    bench.change(Change::Mode(ModeChange::Run)).expect("runs");
+    bench
+}
+
+fn set(bench: &mut Workbench, address: &str, value: i64) {
+    bench.write(address, &Literal::Integer(value)).expect(address);
+}
+
+fn scans(bench: &mut Workbench, count: usize) {
+    (0..count).for_each(|_| assert!(bench.scan(true), "it runs"));
+}
+
+#[test]
+fn power_flow_is_that_of_the_last_scan() {
+    let mut bench = bench();
+    scans(&mut bench, 2);
+    assert_eq!(bench.flow().rung(2, 0), [EXECUTED | BEFORE, EXECUTED]);
+    set(&mut bench, "I:0.0/0", 1);
+    scans(&mut bench, 1);
+    let on = EXECUTED | BEFORE | AFTER | CHANGED;
+    assert_eq!(bench.flow().rung(2, 0).first(), Some(&on));
+    scans(&mut bench, 1);
+    assert_eq!(bench.flow().rung(2, 0).first(), Some(&(on & !CHANGED)));
+}
+
+#[test]
+fn every_scan_can_be_gone_back_to() {
+    let mut bench = bench();
+    let mut past = Vec::new();
+    // Across several copies of the state, with changes in between.
+    for scan in 0..1200 {
+        if scan % 7 == 0 {
+            set(&mut bench, "I:0.0/0", i64::from(scan % 3 != 0));
+        }
+        if scan % 5 == 0 {
+            set(&mut bench, "I:0.0/1", i64::from(scan % 2));
+        }
+        if scan == 400 {
+            bench.change(Change::Force { address: "I:0.0/2".to_owned(), state: Some(true) }).expect("an input");
+        }
+        scans(&mut bench, 1);
+        let values = ["T4:0.ACC", "C5:0.ACC", "B3:0/0"].map(|address| read(&bench, address));
+        past.push((values, bench.flow().rung(2, 0).to_vec(), bench.state().forces.len()));
+    }
+    while past.len() > 3 {
+        for step in [1, 1, 249, 250, 3] {
+            if past.len() <= step + 1 {
+                break;
+            }
+            past.truncate(past.len() - step);
+            assert_eq!(bench.back(step as u64), Ok(step as u64));
+            let values = ["T4:0.ACC", "C5:0.ACC", "B3:0/0"].map(|address| read(&bench, address));
+            let now = (values, bench.flow().rung(2, 0).to_vec(), bench.state().forces.len());
+            assert_eq!(Some(&now), past.last(), "{} scans in", past.len());
+        }
+        if past.len() <= 4 {
+            break;
+        }
+    }
+    let depth = bench.depth();
+    assert_eq!(bench.back(u64::MAX), Ok(depth), "no further than it goes");
+    assert_eq!(read(&bench, "T4:0.ACC"), Value::Word(0));
+}
+
+#[test]
+fn a_change_since_the_last_scan_goes_with_going_back() {
+    let mut bench = bench();
+    scans(&mut bench, 3);
+    set(&mut bench, "N7:0", 5);
+    bench.back(0).expect("no recording");
+    assert_eq!(read(&bench, "N7:0"), Value::Word(0));
+}
+
+#[test]
+fn the_past_is_bounded() {
+    let mut bench = bench();
+    scans(&mut bench, 1);
+    for _ in 0..60_000 {
+        bench.scan(false);
+    }
+    assert!((49_000..=50_500).contains(&bench.depth()), "{}", bench.depth());
+    let at = bench.state().machine.controller().scans();
+    let depth = bench.depth();
+    assert_eq!(bench.back(depth), Ok(depth));
+    assert_eq!(bench.state().machine.controller().scans(), at - depth);
+}
+
+#[test]
+fn forces_win_over_what_is_written_and_go_with_a_restart() {
+    let mut bench = bench();
+    bench.change(Change::Force { address: "I:0.0/0".to_owned(), state: Some(true) }).expect("an input");
+    set(&mut bench, "I:0.0/0", 0);
+    assert!(!bench.state().machine.forces_enabled(), "as on the controller, installed is not enabled");
+    bench.change(Change::EnableForces(true)).expect("can");
+    scans(&mut bench, 3);
+    assert_eq!(read(&bench, "T4:0/EN"), Value::Bit(true));
+    bench.change(Change::EnableForces(false)).expect("can");
+    scans(&mut bench, 1);
+    assert_eq!(read(&bench, "T4:0/EN"), Value::Bit(false));
+    let refused = bench.change(Change::Force { address: "B3:0/0".to_owned(), state: Some(true) });
+    assert!(refused.is_err_and(|why| why.contains("B3:0/0")));
+    assert_eq!(bench.state().forces.len(), 1);
+    bench.restart().expect("no recording");
+    assert!(bench.state().forces.is_empty() && bench.depth() == 0);
+}
+
+#[test]
+fn a_snapshot_goes_on_as_it_did() {
+    let mut bench = bench();
+    set(&mut bench, "I:0.0/0", 1);
+    scans(&mut bench, 10);
+    bench.keep("ten").expect("room");
+    scans(&mut bench, 50);
+    let later = read(&bench, "T4:0.ACC");
+    bench.resume("ten").expect("is kept");
+    scans(&mut bench, 50);
+    assert_eq!(read(&bench, "T4:0.ACC"), later);
+    assert!(bench.resume("eleven").is_err());
+}
+
+#[test]
+fn a_condition_is_looked_at() {
+    let mut bench = bench();
+    set(&mut bench, "I:0.0/0", 1);
+    let condition = Condition { address: "T4:0.ACC".to_owned(), relation: Relation::AtLeast, value: 30.0 };
+    let mut count = 0;
+    while !bench.holds(&condition).expect("a word") {
+        scans(&mut bench, 1);
+        count += 1;
+    }
+    assert_eq!((count, read(&bench, "T4:0.ACC")), (31, Value::Word(30)));
+    assert!(bench.holds(&Condition { address: "T4:0".to_owned(), ..condition }).is_err());
+}
+
+#[test]
+fn a_trace_keeps_changes_and_goes_back() {
+    let mut bench = bench();
+    bench.follow(&["I:0.0/0".to_owned(), "C5:0.ACC".to_owned()]).expect("numbers");
+    for level in [0, 0, 1, 1, 0] {
+        set(&mut bench, "I:0.0/0", level);
+        scans(&mut bench, 1);
+    }
+    let points = |bench: &Workbench| -> Vec<(u64, f64)> {
+        bench
+            .traces()
+            .first()
+            .map(|trace| trace.since(0).map(|point| (point.scan, point.value)).collect())
+            .unwrap_or_default()
+    };
+    assert_eq!(points(&bench), [(1, 0.0), (3, 1.0), (5, 0.0)]);
+    bench.back(2).expect("no recording");
+    assert_eq!(points(&bench), [(1, 0.0), (3, 1.0)]);
+    assert!(bench.follow(&["T4:0".to_owned()]).is_err());
+}
+
+#[test]
+fn a_recording_replays_on_a_fresh_machine() {
+    let mut bench = bench();
+    scans(&mut bench, 5);
+    set(&mut bench, "C5:0.ACC", 3);
+    bench.record().expect("begins anew");
+    assert_eq!(read(&bench, "C5:0.ACC"), Value::Word(0));
+    scans(&mut bench, 3);
+    for level in [1, 0, 1, 0, 1] {
+        set(&mut bench, "I:0.0/1", level);
+        set(&mut bench, "I:0.0/2", level);
+        scans(&mut bench, 2);
+    }
+    bench.expect(&["C5:0.ACC".to_owned(), "B3:0/0".to_owned()]).expect("recording");
+    set(&mut bench, "I:0.0/3", 1);
+    bench.set_scan_time(Duration::from_millis(25)).expect("in range");
+    scans(&mut bench, 4);
+    bench.change(Change::Mode(ModeChange::Program)).expect("can");
+    bench.change(Change::Mode(ModeChange::Run)).expect("can");
+    scans(&mut bench, 1);
+    bench.expect(&["B3:0/0".to_owned(), "C5:0.ACC".to_owned()]).expect("recording");
+    assert!(bench.back(1).is_err(), "a recording only goes forward");
+    let subject = Recorded { name: "counts \"three\"".to_owned(), program: "x.RSS".to_owned(), family: None };
+    let (text, problems) = bench.recorded(&subject).expect("recording");
+    assert_eq!(problems, Vec::<String>::new(), "{text}");
+    let scenario = Scenario::parse(&text).expect("reads");
+    let report = play(&scenario, Subject::controller_mut(&mut machine(LADDER)), Vec::new()).expect("plays");
+    assert_eq!((report.failures.len(), report.checks), (0, 4), "{text}");
+    // It can fail: another count is noticed.
+    let other = text.replacen("\"C5:0.ACC\" = 3", "\"C5:0.ACC\" = 2", 1);
+    assert_ne!(other, text);
+    let scenario = Scenario::parse(&other).expect("reads");
+    let report = play(&scenario, Subject::controller_mut(&mut machine(LADDER)), Vec::new()).expect("plays");
+    assert_eq!(report.failures.len(), 1);
+}
+
+#[test]
+fn what_a_scenario_cannot_say_is_said() {
+    let mut bench = bench();
+    bench.record().expect("begins");
+    bench.change(Change::Force { address: "I:0.0/0".to_owned(), state: Some(true) }).expect("an input");
+    bench.change(Change::EnableForces(true)).expect("can");
+    scans(&mut bench, 20);
+    bench.expect(&["T4:0.ACC".to_owned()]).expect("recording");
+    let (text, problems) = bench.recorded(&Recorded::default()).expect("recording");
+    assert!(text.contains("# Not in this scenario: a force of I:0.0/0"), "{text}");
+    assert!(problems.iter().any(|problem| problem.contains("T4:0.ACC")), "the replay differs: {problems:?}");
+}
