@@ -85,6 +85,12 @@ pub enum Command {
                             of the controller. Exit code 1: the program stopped by a fault, or is refused."
     )]
     Bench(BenchArguments),
+    /// Watch, force and step a program in the browser
+    ///
+    /// A web server for this computer alone: it listens on the loopback address, its pages load nothing from elsewhere,
+    /// and the program does not leave the machine. Other addresses must be asked for and then need the token that is
+    /// printed.
+    Serve(ServeArguments),
     /// Runs scenarios (TOML) and reports every expectation that is not met
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\
                             Exit code 0: all met; 1: an expectation not met or a program refused; 3: a scenario or program that cannot be read.")]
@@ -504,6 +510,33 @@ pub struct RunArguments {
     /// Which copy of the program
     #[arg(long, value_enum, default_value_t)]
     pub image: ImageChoice,
+}
+
+#[derive(Args)]
+pub struct ServeArguments {
+    /// A project, SLC text, JSON project or Do-more text
+    #[arg(value_name = "FILE")]
+    pub program: PathBuf,
+    /// Port; 0 takes one that is free
+    #[arg(long, value_name = "N", default_value_t = 8500)]
+    pub port: u16,
+    /// Address to listen on; others than loopback need the token that is printed then
+    #[arg(long, value_name = "IP", default_value = "127.0.0.1")]
+    pub address: std::net::IpAddr,
+    /// Open the page in the browser
+    #[arg(long)]
+    pub open: bool,
+    /// Nothing can be changed by those who look
+    #[arg(long)]
+    pub read_only: bool,
+    /// Wire the controller to this plant model
+    #[arg(long, value_name = "TOML")]
+    pub plant: Option<PathBuf>,
+    /// Load a program that holds instructions which cannot be simulated; executing one is major fault 0031
+    #[arg(long)]
+    pub accept_unsupported: bool,
+    #[command(flatten)]
+    pub simulation: Simulation,
 }
 
 #[derive(Args)]

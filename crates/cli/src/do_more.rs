@@ -1,5 +1,6 @@
 //! Do-more programs for scenarios and runs: text to a machine.
 
+use domore::Project;
 use domore::engine::{Machine, Options, Program};
 use domore::program::CodeKind;
 use ladder::Severity;
@@ -22,6 +23,15 @@ pub fn members(text: &str) -> Vec<String> {
 /// # Errors
 /// A line for everything that keeps it from running.
 pub fn machine_of(text: &str, options: &Options) -> Result<(Machine, Vec<Approximation>), Vec<String>> {
+    let (_, program, approximations) = program_of(text, options)?;
+    Ok((Machine::new(program), approximations))
+}
+
+/// The project of a Do-more text, the program to run, and what runs only approximately.
+///
+/// # Errors
+/// A line for everything that keeps it from running.
+pub fn program_of(text: &str, options: &Options) -> Result<(Project, Program, Vec<Approximation>), Vec<String>> {
     let reading = domore::text::read(text).map_err(|error| vec![error.to_string()])?;
     let errors = reading.diagnostics.iter().filter(|diagnostic| diagnostic.problem.severity() == Severity::Error);
     let errors: Vec<String> = errors.map(ToString::to_string).collect();
@@ -32,7 +42,7 @@ pub fn machine_of(text: &str, options: &Options) -> Result<(Machine, Vec<Approxi
         .map_err(|refusals| refusals.iter().map(ToString::to_string).collect::<Vec<_>>())?;
     let named = program.approximations().iter();
     let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
-    Ok((Machine::new(program), approximations))
+    Ok((reading.project, program, approximations))
 }
 
 /// A machine for the text of a program file.

@@ -18,6 +18,7 @@ mod prove;
 mod report;
 mod run;
 mod search;
+mod serve;
 mod show;
 mod test;
 mod timers;
@@ -52,6 +53,7 @@ pub fn run(arguments: Arguments) -> Result<Outcome, Error> {
         Command::Export(arguments) => export::run(&arguments),
         Command::Build(arguments) => build::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Serve(arguments) => serve::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
         Command::Migrate(arguments) => migrate::run(&arguments),
