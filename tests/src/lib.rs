@@ -9,3 +9,4 @@ pub mod browser;
 pub mod corpus;
 pub mod drawing;
 pub mod printout;
+pub mod svg_boxes;

@@ -59,9 +59,11 @@ pub enum Command {
     /// Lossless check: bytes understood, byte-identical rewrite, compiled code agrees with operands
     #[command(after_help = "Example: rungs verify conveyor.RSS\n         rungs verify --json archive/ > verify.jsonl")]
     Verify(VerifyArguments),
-    /// Files for other tools: JSON project, SLC text, CSV tables
+    /// Files for other tools and people: JSON project, SLC text, CSV tables, drawings
     #[command(after_help = "Example: rungs export conveyor.RSS --to json -o conveyor.json\n         \
-                            rungs export conveyor.RSS --to csv --table timers")]
+                            rungs export conveyor.RSS --to csv --table timers\n         \
+                            rungs export conveyor.RSS --to svg --file 2 --rung 4 --out rung4.svg\n         \
+                            rungs export conveyor.RSS --to html --out ladder.html")]
     Export(ExportArguments),
     /// SLC text or JSON project to a complete .RSS with code, data tables and documentation
     #[command(
@@ -199,6 +201,9 @@ pub struct ShowArguments {
     /// Plain ASCII instead of box-drawing characters
     #[arg(long)]
     pub ascii: bool,
+    /// Mark contacts that conduct and coils that are on with T, by the data tables of the image
+    #[arg(long)]
+    pub state: bool,
     #[command(flatten)]
     pub input: Input,
 }
@@ -420,12 +425,27 @@ pub struct ExportArguments {
     /// With --to csv: which table
     #[arg(long, value_enum, default_value_t)]
     pub table: Table,
-    /// File to write; a folder when several projects are exported, which gets the subfolders they come from. Default: standard output, where each of several JSON projects is one line
-    #[arg(short, long)]
+    /// File to write; a folder when several projects are exported, which gets the subfolders they come from; with --to svg and several rungs a folder, made if it does not exist. Default: standard output, where each of several JSON projects is one line
+    #[arg(short, long, visible_alias = "out")]
     pub output: Option<PathBuf>,
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
+    /// With --to svg and html: only these program files
+    #[arg(long = "file", value_name = "N")]
+    pub program_files: Vec<u16>,
+    /// With --to svg and html: only these code blocks of a Do-more project
+    #[arg(long = "block", value_name = "NAME")]
+    pub blocks: Vec<String>,
+    /// With --to svg and html: only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
+    #[arg(long, value_name = "A[..B]")]
+    pub rung: Option<RungRange>,
+    /// With --to svg and html: columns to draw in, from 60 to 400; a column is 8 pixels wide
+    #[arg(long, default_value_t = 120)]
+    pub width: usize,
+    /// With --to svg and html: highlight contacts that conduct and coils that are on, by the data tables of the image
+    #[arg(long)]
+    pub state: bool,
     /// Strict reading: the first deviation from the format is an error
     #[arg(long)]
     pub strict: bool,
@@ -444,6 +464,10 @@ pub enum Form {
     Csv,
     /// Text for Do-more Designer, of a Do-more project
     Domore,
+    /// Every rung drawn, a file each
+    Svg,
+    /// The ladder drawn, as one page that needs no network
+    Html,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -829,6 +853,13 @@ fn choice(name: &str) -> Result<AnyChoice, String> {
 pub struct RungRange {
     pub first: usize,
     pub last: usize,
+}
+
+impl RungRange {
+    /// Whether a rung is in it.
+    pub fn holds(self, number: usize) -> bool {
+        (self.first..=self.last).contains(&number)
+    }
 }
 
 impl std::str::FromStr for RungRange {

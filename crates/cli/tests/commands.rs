@@ -272,3 +272,27 @@ fn a_length_of_zero_does_not_hide_a_file_from_the_cross_reference() {
         assert!(may, "{address}: {found}");
     }
 }
+
+#[test]
+fn rungs_are_drawn_as_files_and_as_a_page() {
+    let one = text(&["export", "motor/motor.RSS", "--to", "svg", "--rung", "0"]);
+    assert!(one.starts_with("<svg ") && one.ends_with("</svg>\n") && one.contains("<style>"), "{one}");
+    let many = rungs(&["export", "motor/motor.RSS", "--to", "svg"]);
+    assert_eq!(many.status.code(), Some(2), "several files on standard output");
+    let to = folder("export_svg").to_string_lossy().into_owned();
+    let written = text(&["export", "motor/motor.RSS", "--to", "svg", "--out", &to]);
+    let files: Vec<&str> = written.lines().collect();
+    assert!(files.len() > 1 && files.iter().all(|file| std::path::Path::new(file).is_file()), "{written}");
+    let none = rungs(&["export", "motor/motor.RSS", "--to", "svg", "--file", "77", "--out", &to]);
+    assert_eq!(none.status.code(), Some(1), "no such file");
+    for project in ["motor/motor.RSS", "filling_domore/filling.txt"] {
+        let page = text(&["export", project, "--to", "html"]);
+        assert!(page.starts_with("<!doctype html>") && page.ends_with("</body></html>\n"));
+        assert!(!page.contains("<script") && !page.contains("http"), "{project} needs something from elsewhere");
+        // Every link leads to a place of the page.
+        for link in page.split("href=\"#").skip(1).filter_map(|rest| rest.split('"').next()) {
+            assert!(page.contains(&format!(" id=\"{link}\"")), "{project}: {link}");
+        }
+        assert!(page.contains("href=\"#a0\""), "{project} has no link");
+    }
+}

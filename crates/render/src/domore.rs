@@ -52,11 +52,16 @@ pub fn scene(block: &CodeBlock, index: usize, documentation: &Documentation<'_>,
 
 /// The head of a code block: `Program Batch --- Total Rungs in Code Block = 12`, and a line below it.
 pub fn header(block: &CodeBlock, style: &Style) -> String {
+    head(&title(block), style)
+}
+
+/// What a code block is, on one line, as in [`header`].
+pub fn title(block: &CodeBlock) -> String {
     let name = match block.kind {
         CodeKind::Bare => "Rungs without a code block".to_owned(),
         _ => format!("{} {}", clean(block.kind.title()), clean(&block.name)),
     };
-    head(&format!("{name} --- Total Rungs in Code Block = {}", block.rungs.len()), style)
+    format!("{name} --- Total Rungs in Code Block = {}", block.rungs.len())
 }
 
 /// Writes the head of a code block and its rungs, or those of `rungs` (indices from 0).

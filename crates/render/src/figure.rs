@@ -345,13 +345,14 @@ fn ink(item: &Item, rows: usize, out: &mut Vec<Ink>) {
         }
         Shape::Coil(letters) => {
             let width = columns(letters).max(1) + 2;
-            let (left, right, wire) = (x * CELL_WIDTH + 3, (x + width) * CELL_WIDTH - 3, down(y));
+            // The arcs meet the wires, which end in the middle of the first and last column.
+            let (left, right, wire) = (across(x), across(x + width - 1), down(y));
             let arc = |side: usize, inner: usize| {
                 let (top, bottom) = (wire - SIGN, wire + SIGN);
                 [M(inner, top), Step::Curve((side, top + 3), (side, bottom - 3), (inner, bottom))]
             };
-            let mut steps = Vec::from(arc(left - 2, left + 5));
-            steps.extend(arc(right + 2, right - 5));
+            let mut steps = Vec::from(arc(left - 1, left + 3));
+            steps.extend(arc(right + 1, right - 3));
             stroke(Pen::Sign, steps);
             out.extend(line(item, Role::Mnemonic, letters, x + 1));
         }
@@ -361,8 +362,8 @@ fn ink(item: &Item, rows: usize, out: &mut Vec<Ink>) {
             let bracket = |side: usize, inner: usize| {
                 [M(inner, wire - SIGN), L(side, wire - SIGN), L(side, wire + SIGN), L(inner, wire + SIGN)]
             };
-            let mut steps = Vec::from(bracket(left, left + 4));
-            steps.extend(bracket(right, right - 4));
+            let mut steps = Vec::from(bracket(left, left + 3));
+            steps.extend(bracket(right, right - 3));
             stroke(Pen::Sign, steps);
             out.extend(line(item, Role::Mnemonic, letters, x + 1));
         }

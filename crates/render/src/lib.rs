@@ -34,6 +34,7 @@
 pub mod domore;
 mod face;
 pub mod figure;
+pub mod html;
 mod layout;
 mod leaf;
 mod paint;
@@ -172,7 +173,12 @@ fn laid_out(
 /// The head of a program file, as at the top of printed pages:
 /// `LAD 2 - MAIN --- Total Rungs in File = 10`, and a line below it.
 pub fn header(file: &ProgramFile, style: &Style) -> String {
-    rung::header(file, style)
+    rung::head(&title(file), style)
+}
+
+/// What a program file is, on one line, as in [`header`].
+pub fn title(file: &ProgramFile) -> String {
+    rung::title(file)
 }
 
 /// Writes the head of a program file and its rungs, or those of `rungs` (from 0), one after the

@@ -121,8 +121,8 @@ fn place_words(items: &mut Vec<Item>, reason: NotDrawn, text: &str, left: usize,
     row - 1
 }
 
-/// The head of a program file.
-pub(crate) fn header(file: &ProgramFile, style: &Style) -> String {
+/// What a program file is, on one line.
+pub(crate) fn title(file: &ProgramFile) -> String {
     let kind = match file.kind {
         ProgramFileKind::Ladder => "LAD",
         other => other.as_str(),
@@ -131,7 +131,7 @@ pub(crate) fn header(file: &ProgramFile, style: &Style) -> String {
     if !file.description.trim().is_empty() {
         text = format!("{text} - {}", clean(file.description.trim()));
     }
-    head(&format!("{text} --- Total Rungs in File = {}", file.rungs.len()), style)
+    format!("{text} --- Total Rungs in File = {}", file.rungs.len())
 }
 
 /// A clean text in the middle, and a line below it.

@@ -51,7 +51,7 @@ impl Scene {
 pub type Node = usize;
 
 /// One thing drawn.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Item {
     /// Column of the left end.
     pub x: usize,
@@ -64,7 +64,7 @@ pub struct Item {
 }
 
 /// Whose an item is.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Of {
     /// The rung's: number, comment, rails.
     #[default]
@@ -102,7 +102,7 @@ pub struct Spot {
 }
 
 /// What an [`Item`] draws, starting at its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A line of text; its characters are printable and of known width.
     Text(Role, String),
@@ -143,7 +143,7 @@ pub enum Shape {
 }
 
 /// Where a wire leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// To the left.
     Left,

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use analysis::{CrossReference, TimerReport};
 use ladder::Severity;
 
+use super::drawings::{self, Rungs};
 use super::{Opened, domore, each_dialect};
 use crate::args::{ExportArguments, Form, Input, Table};
 use crate::output::{Error, Outcome, printable};
@@ -47,11 +48,20 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
             eprintln!("{}: not written, because it could not be read whole", opened.path.display());
             return Ok(Outcome::Unreadable);
         }
+        if arguments.to == Form::Svg {
+            let rungs = Rungs::of_project(opened, arguments);
+            let outcome = put_drawings(arguments, many, &opened.path, &rungs, &mut written.borrow_mut(), out)?;
+            return Ok(if incomplete { Outcome::Unreadable } else { outcome });
+        }
         let bytes = exported(opened, arguments, many && arguments.output.is_none())?;
         let outcome = put(&opened.path, &bytes, ending(arguments), out)?;
         Ok(if incomplete { Outcome::Unreadable } else { outcome })
     };
     each_dialect(&arguments.files, &input, slc, |opened, out| {
+        if arguments.to == Form::Svg {
+            let rungs = Rungs::of_domore(opened, arguments);
+            return put_drawings(arguments, many, &opened.path, &rungs, &mut written.borrow_mut(), out);
+        }
         // What could not be understood is carried, so that a text is whole in any case.
         let bytes = domore::exported(opened, arguments)?;
         put(&opened.path, &bytes, domore::ending(arguments), out)
@@ -76,6 +86,40 @@ fn write(target: &Path, bytes: &[u8], force: bool, written: &mut HashSet<PathBuf
     Ok(())
 }
 
+/// A file for each rung: in the folder that `-o` names, below one for each project if there are several;
+/// a single rung is the output itself.
+fn put_drawings(
+    arguments: &ExportArguments,
+    many: bool,
+    path: &Path,
+    rungs: &Rungs<'_>,
+    written: &mut HashSet<PathBuf>,
+    out: &mut dyn Write,
+) -> Result<Outcome, Error> {
+    let (name, count) = (path.display(), rungs.len());
+    if count == 0 {
+        eprintln!("{name}: no such rungs");
+        return Ok(Outcome::Finding);
+    }
+    let Some(output) = &arguments.output else {
+        if many || count > 1 {
+            return Err(Error::Use(format!("{name}: {count} rungs are as many files: -o must name a folder")));
+        }
+        for drawn in rungs.drawn() {
+            out.write_all(drawings::svg(&drawn).as_bytes())?;
+        }
+        return Ok(Outcome::Done);
+    };
+    let folder = if many { target(output, &arguments.files, path, "svg").with_extension("") } else { output.clone() };
+    for drawn in rungs.drawn() {
+        let single = count == 1 && !many && !output.is_dir();
+        let target = if single { output.clone() } else { folder.join(format!("{}.svg", drawn.stem)) };
+        write(&target, drawings::svg(&drawn).as_bytes(), arguments.force, written).map_err(Error::Use)?;
+        writeln!(out, "{}", target.display())?;
+    }
+    Ok(Outcome::Done)
+}
+
 /// The file for one project; `line`: a JSON project goes on one line, as one of several.
 fn exported(opened: &Opened, arguments: &ExportArguments, line: bool) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
@@ -90,6 +134,11 @@ fn exported(opened: &Opened, arguments: &ExportArguments, line: bool) -> Result<
             }
             bytes = convert::slc::encode(&export.file.write());
         }
+        (Form::Html, _) => {
+            drawings::page(&printable(&opened.title()), &Rungs::of_project(opened, arguments), &mut bytes)?;
+        }
+        // Files of their own, see `put_drawings`.
+        (Form::Svg, _) => {}
         (Form::Domore, _) => {
             let name = opened.path.display();
             return Err(Error::Use(format!("{name}: `rungs migrate {name} --to domore --out DIR` converts a program")));
@@ -122,6 +171,8 @@ fn ending(arguments: &ExportArguments) -> &'static str {
         (Form::Json, _) => "json",
         (Form::Slc, _) => "SLC",
         (Form::Domore, _) => "txt",
+        (Form::Svg, _) => "svg",
+        (Form::Html, _) => "html",
         (Form::Csv, Table::Symbols) => "symbols.csv",
         (Form::Csv, Table::Timers) => "timers.csv",
         (Form::Csv, Table::Xref) => "xref.csv",

@@ -6,6 +6,7 @@ mod check;
 mod data;
 mod diff;
 mod domore;
+mod drawings;
 mod export;
 mod git;
 mod git_setup;

@@ -23,6 +23,7 @@ pub fn run(arguments: &ShowArguments) -> Result<Outcome, Error> {
         width,
         color: terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()),
         ascii: arguments.ascii,
+        state: arguments.state,
         ..render::Style::default()
     };
     let slc = |opened: &Opened, out: &mut dyn Write| {

@@ -5,6 +5,7 @@ use domore::xref::CrossReference;
 
 use super::OpenedDomore;
 use crate::args::{ExportArguments, Form, Table};
+use crate::commands::drawings::{self, Rungs};
 use crate::output::Error;
 
 /// The bytes of the file to write.
@@ -25,6 +26,11 @@ pub fn exported(opened: &OpenedDomore, arguments: &ExportArguments) -> Result<Ve
         (Form::Csv, Table::Timers) => {
             return Err(Error::Use(format!("{}: there is no timer table of Do-more projects", opened.name())));
         }
+        (Form::Html, _) => {
+            drawings::page(&opened.name(), &Rungs::of_domore(opened, arguments), &mut bytes)?;
+        }
+        // Files of their own.
+        (Form::Svg, _) => {}
         (Form::Slc, _) => {
             return Err(Error::Use(format!("{}: a Do-more project has no SLC text", opened.name())));
         }
@@ -40,5 +46,7 @@ pub fn ending(arguments: &ExportArguments) -> &'static str {
         (Form::Csv, Table::Timers) => "timers.csv",
         (Form::Csv, Table::Xref) => "xref.csv",
         (Form::Slc | Form::Domore, _) => "txt",
+        (Form::Svg, _) => "svg",
+        (Form::Html, _) => "html",
     }
 }
