@@ -91,7 +91,7 @@ fn what_only_one_side_changed_is_taken_over_whole() {
     let Some(root) = corpus::root() else { return };
     let all = corpus::files(&root, ".rss").expect("the corpus can be listed");
     let all: Vec<_> = all.into_iter().filter(|path| path.starts_with(root.join("rslogix500"))).collect();
-    let (mut merges, mut unwritable) = (0, Vec::new());
+    let (mut merges, mut two_sided, mut unwritable) = (0, 0, Vec::new());
     // Every fourth step in each run; all 240 merges take half a minute.
     for pair in all.windows(2).step_by(4) {
         let stem = |path: &Path| analysis::history::Name::of(&path.to_string_lossy()).stem;
@@ -121,7 +121,30 @@ fn what_only_one_side_changed_is_taken_over_whole() {
         };
         check(&a, &b);
         check(&b, &a);
+        // What a second person did meanwhile: a rung more at the end of each ladder file.
+        let more = |image: &Image| {
+            let mut image = image.clone();
+            for file in image.program_files.iter_mut().filter(|file| file.kind == ladder::ProgramFileKind::Ladder) {
+                let at = file.rungs.len().saturating_sub(1);
+                let bit = Address::element(FileType::B, 3, file.number).with_bit(7);
+                let coil =
+                    ladder::Instruction::new(ladder::Mnemonic::named("OTL"), vec![ladder::Operand::Address(bit)]);
+                file.rungs.insert(at, Rung::new(vec![ladder::Element::Instruction(coil)]));
+            }
+            image
+        };
+        let numbers = |image: &Image| image.ladder_files().map(|file| file.number).collect::<Vec<_>>();
+        if numbers(&a.1.main) == numbers(&b.1.main) {
+            let merged = merge(&a.1.main, &b.1.main, &more(&a.1.main));
+            if merged.is_clean() {
+                let found = difference(&more(&b.1.main), &merged.image);
+                assert!(found.logic.is_empty() && found.documentation.is_empty(), "{name}: {found:?}");
+                two_sided += 1;
+            }
+        }
     }
+    // The others changed the last rung of a file.
+    assert!(two_sided > 20, "{two_sided}");
     assert!(merges >= 50, "{merges}");
     assert!(unwritable.is_empty(), "{unwritable:#?}");
 }
@@ -200,6 +223,33 @@ fn a_rung_taken_out_and_changed_is_a_conflict() {
     let [base, ours, mut theirs] = three();
     rungs(&mut theirs, 2).remove(1);
     assert!(difference(&theirs, &merge(&base, &ours, &theirs).image).is_empty());
+}
+
+#[test]
+fn no_rung_comes_twice_or_comes_back() {
+    let shift = |image: &mut Image, from: usize, to: usize| {
+        let rung = rungs(image, 2).remove(from);
+        rungs(image, 2).insert(to, rung);
+    };
+    let [base, mut ours, mut theirs] = three();
+    shift(&mut ours, 1, 5);
+    shift(&mut theirs, 1, 3);
+    let found = merge(&base, &ours, &theirs);
+    assert!(whys(&found).contains(&"both sides moved a rung, to different places"), "{:?}", whys(&found));
+    let [_, _, mut theirs] = three();
+    rungs(&mut theirs, 2).remove(1);
+    let found = merge(&base, &ours, &theirs);
+    assert!(whys(&found).contains(&"ours moved a rung that theirs took out"), "{:?}", whys(&found));
+    let found = merge(&base, &theirs, &ours);
+    assert!(whys(&found).contains(&"theirs moved a rung that ours took out"), "{:?}", whys(&found));
+    assert!(merge(&base, &ours, &ours).is_clean());
+    let [_, mut ours, mut theirs] = three();
+    let mut rung = base.program_file(2).expect("a file").rungs[2].clone();
+    change(&mut rung, 4);
+    rungs(&mut ours, 2).insert(0, rung.clone());
+    rungs(&mut theirs, 2).insert(4, rung);
+    let found = merge(&base, &ours, &theirs);
+    assert_eq!(whys(&found), ["both sides inserted the same rung, at different places"]);
 }
 
 #[test]

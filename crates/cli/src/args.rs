@@ -739,6 +739,9 @@ pub struct MergeArguments {
 
 #[derive(Args)]
 pub struct TextconvArguments {
+    /// The form of the text that is meant: git keeps texts by the command that made them
+    #[arg(long, value_name = "N")]
+    pub form: Option<u32>,
     /// A project
     #[arg(value_name = "FILE")]
     pub file: PathBuf,

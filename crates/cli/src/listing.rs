@@ -10,6 +10,9 @@ use ladder::{
     AddressEntry, DataFile, Documentation, Element, FileType, Image, Instruction, Operand, Project, Radix, Rung,
 };
 
+/// Counted up with every change of this text: git caches it under the command that made it.
+pub const FORM: u32 = 1;
+
 /// Columns up to which a rung stays on one line.
 const ONE_LINE: usize = 100;
 

@@ -144,6 +144,9 @@ pub fn merge(base: &Image, ours: &Image, theirs: &Image) -> Merge {
     if parts.channels == Side::Theirs {
         image.channels = theirs.channels.clone();
     }
+    let named = [("processor", parts.processor), ("I/O configuration", parts.io), ("channels", parts.channels)];
+    let taken = named.iter().filter(|(_, side)| *side == Side::Theirs);
+    notes.extend(taken.map(|(name, _)| format!("the {name} is taken from theirs")));
     let left = matched(base, ours);
     let right = matched(base, theirs);
     for (found, side) in [(&left.0, "ours"), (&right.0, "theirs")] {

@@ -29,8 +29,64 @@ pub(super) fn merge(
     for number in numbers {
         files.extend(merger.file(number, conflicts));
     }
+    doubled(sides, &files, conflicts);
     assemble(three, &files, image, conflicts);
     files
+}
+
+/// Rungs that merging would leave twice, or bring back: moved by both sides, moved by one and taken out by the
+/// other, or inserted by both at different places.
+fn doubled(sides: (&Matched, &Matched), files: &[MergedFile], conflicts: &mut Vec<Conflict>) {
+    let result: BTreeSet<(Side, Place)> = files
+        .iter()
+        .flat_map(|file| &file.pieces)
+        .filter_map(|piece| match piece {
+            Piece::Rung(rung) => Some((rung.side, rung.at)),
+            Piece::Conflict(_) => None,
+        })
+        .collect();
+    let rungs = |matched: &'_ Matched, kind: ChangeKind| -> Vec<(Option<Place>, Option<Place>, String)> {
+        let rungs = matched.0.logic.iter().filter_map(|change| match change {
+            LogicChange::Rung(rung) if rung.kind == kind => Some(rung),
+            _ => None,
+        });
+        let text = |words: &[Word]| words.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
+        rungs.map(|rung| (rung.old, rung.new, text(&rung.new_words))).collect()
+    };
+    let shown = |at: Option<Place>| at.map(|at| format!("rung {}:{}", at.file, at.rung));
+    let mut tell = |what: &str, base: Option<Place>, ours: Option<Place>, theirs: Option<Place>| {
+        conflicts.push(Conflict { what: what.to_owned(), base: shown(base), ours: shown(ours), theirs: shown(theirs) });
+    };
+    let both = |ours: Option<Place>, theirs: Option<Place>| {
+        let has = |side, at: Option<Place>| at.is_some_and(|at| result.contains(&(side, at)));
+        has(Side::Ours, ours) && has(Side::Theirs, theirs)
+    };
+    let moved = [sides.0, sides.1].map(|matched| rungs(matched, ChangeKind::Moved));
+    let gone = [sides.0, sides.1].map(|matched| rungs(matched, ChangeKind::Deleted));
+    let by_old = |list: &[(Option<Place>, Option<Place>, String)]| -> BTreeMap<Option<Place>, Option<Place>> {
+        list.iter().map(|(old, new, _)| (*old, *new)).collect()
+    };
+    let [ours_gone, theirs_moved, theirs_gone] = [by_old(&gone[0]), by_old(&moved[1]), by_old(&gone[1])];
+    for (old, new, _) in &moved[0] {
+        if let Some(other) = theirs_moved.get(old).filter(|other| both(*new, **other)) {
+            tell("both sides moved a rung, to different places", *old, *new, *other);
+        }
+        if theirs_gone.contains_key(old) {
+            tell("ours moved a rung that theirs took out", *old, *new, None);
+        }
+    }
+    for (old, new, _) in &moved[1] {
+        if ours_gone.contains_key(old) {
+            tell("theirs moved a rung that ours took out", *old, None, *new);
+        }
+    }
+    let inserted = [sides.0, sides.1].map(|matched| rungs(matched, ChangeKind::Inserted));
+    let texts: BTreeMap<&str, Option<Place>> = inserted[0].iter().map(|(_, new, text)| (text.as_str(), *new)).collect();
+    for (_, new, text) in inserted[1].iter().filter(|(_, _, text)| !text.is_empty() && text != "END") {
+        if let Some(ours) = texts.get(text.as_str()).filter(|ours| both(**ours, *new)) {
+            tell("both sides inserted the same rung, at different places", None, *ours, *new);
+        }
+    }
 }
 
 /// Numbers and addresses that one side replaced throughout, where the other side's rungs have the old ones.

@@ -38,7 +38,7 @@ pub fn run(arguments: &GitSetupArguments) -> Result<Outcome, Error> {
         return Ok(Outcome::Done);
     }
     let set = |name: &str, value: &str| config(&[name, value]).map(drop).map_err(Error::Use);
-    set("diff.rungs.textconv", &format!("{program} textconv"))?;
+    set("diff.rungs.textconv", &format!("{program} textconv --form {}", listing::FORM))?;
     set("diff.rungs.cachetextconv", "true")?;
     set("diff.rungs.xfuncname", HEADINGS)?;
     set("difftool.rungs.cmd", &format!("{program} diff \"$LOCAL\" \"$REMOTE\""))?;
@@ -151,6 +151,9 @@ fn write_attributes(path: &Path, line: Option<&str>) -> Result<(), Error> {
 /// The text git shows for a project. A file that is none must not stop `git log`: the text says so.
 pub fn textconv(arguments: &TextconvArguments) -> Result<Outcome, Error> {
     let path = &arguments.file;
+    if arguments.form.is_some_and(|form| form != listing::FORM) {
+        eprintln!("rungs: this text has another form than git was set up for: run `rungs git-setup` again");
+    }
     let text = match open(path, mode(false)) {
         Ok(project) => listing::whole(&project),
         // Git hands over an empty file where there is none.
