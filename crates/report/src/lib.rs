@@ -20,6 +20,7 @@ mod domore;
 pub mod html;
 pub mod model;
 mod options;
+mod page;
 pub mod pdf;
 mod rslogix;
 pub mod words;

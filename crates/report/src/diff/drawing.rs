@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use analysis::diff::{Edit, EditKind, Word};
 use render::svg::{self, Change, Mark};
 
-use super::escape::escape;
 use super::page::is_on;
 use crate::Rung;
+use crate::page::escape;
 
 /// Columns of a drawing: two of them stand side by side on a common screen.
 const WIDTH: usize = 84;

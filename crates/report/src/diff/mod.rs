@@ -1,8 +1,6 @@
 //! Two programs side by side: what both dialects offer, and the page that shows a difference.
 
 mod drawing;
-mod escape;
-mod hash;
 mod page;
 mod rows;
 mod side;

@@ -6,14 +6,12 @@ use std::io::{self, Write};
 use analysis::diff::{Change, ChangeKind, Difference, Edit, EditKind, LogicChange, Place, RungChange, ValueChange};
 
 use super::drawing::{Half, drawing};
-use super::escape::escape;
-use super::hash::source;
 use super::rows::{Chapter, Row, chapters};
 use super::side::{Part, Side};
 use super::text::{Stretch, stretches};
 use super::words::sentence;
+use crate::page::{self, escape, relative};
 
-const BASE: &str = include_str!("../../assets/base.css");
 const STYLE: &str = include_str!("../../assets/diff.css");
 const SCRIPT: &str = include_str!("../../assets/diff.js");
 
@@ -153,31 +151,8 @@ fn last(name: &str) -> &str {
     name.trim_end_matches(['/', '\\']).rsplit(['/', '\\']).next().unwrap_or(name)
 }
 
-/// A file name as a link that can only be one: nothing in it can be a scheme or a mark.
-fn relative(name: &str) -> String {
-    let mut href = String::from("./");
-    for byte in name.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => href.push(char::from(byte)),
-            other => href.push_str(&format!("%{other:02X}")),
-        }
-    }
-    href
-}
-
 fn head(title: &str, out: &mut dyn Write) -> io::Result<()> {
-    let style = format!("{BASE}{}{STYLE}", super::drawing::style());
-    write!(
-        out,
-        "<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n\
-         <meta http-equiv=Content-Security-Policy content=\"default-src 'none'; style-src {}; script-src {}; \
-         base-uri 'none'; form-action 'none'\">\n\
-         <meta name=viewport content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=referrer content=no-referrer>\n<title>{}</title>\n<style>{style}</style>\n</head>\n<body>\n",
-        source(&style),
-        source(SCRIPT),
-        escape(title)
-    )
+    page::head(title, &format!("{}{}{STYLE}", page::STYLE, super::drawing::style()), SCRIPT, out)
 }
 
 fn bar(title: &str, steps: bool, out: &mut dyn Write) -> io::Result<()> {

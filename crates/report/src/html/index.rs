@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::{bar, escape, foot, head};
+use crate::page::relative;
 
 /// A project in the list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,16 +65,4 @@ pub fn index(title: &str, tool: &str, pages: &[Page], out: &mut dyn Write) -> io
     }
     out.write_all(b"</table></div></details></section>\n")?;
     foot(out)
-}
-
-/// A file name as a link that can only be one: nothing in it can be a scheme, a folder or a mark.
-fn relative(name: &str) -> String {
-    let mut href = String::from("./");
-    for byte in name.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => href.push(char::from(byte)),
-            other => href.push_str(&format!("%{other:02X}")),
-        }
-    }
-    href
 }

@@ -5,8 +5,6 @@
 //! script all content is there, and folds and links work.
 
 mod blocks;
-mod escape;
-mod hash;
 mod index;
 mod sizes;
 
@@ -14,11 +12,11 @@ use std::io::{self, Write};
 
 use crate::model::{Document, Section};
 use crate::options::Kind;
+use crate::page;
 
-pub use escape::escape;
+use crate::page::escape;
 pub use index::{Page, index};
 
-const STYLE: &str = include_str!("../../assets/report.css");
 const SCRIPT: &str = include_str!("../../assets/report.js");
 
 /// Writes a document as a page.
@@ -88,24 +86,9 @@ fn contents(chapter: &[Section<'_>], out: &mut dyn Write) -> io::Result<()> {
     out.write_all(b"</ol></details></li>\n")
 }
 
-/// All before what can be seen; `rules` are added to the style.
+/// All before what can be seen; `rules` are added to the style of the page and its drawings.
 fn head(title: &str, rules: &str, out: &mut dyn Write) -> io::Result<()> {
-    let (style, script) = (style(rules), hash::source(SCRIPT));
-    write!(
-        out,
-        "<!DOCTYPE html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n\
-         <meta http-equiv=Content-Security-Policy content=\"default-src 'none'; style-src {}; script-src {script}; \
-         base-uri 'none'; form-action 'none'\">\n\
-         <meta name=viewport content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=referrer content=no-referrer>\n<title>{}</title>\n<style>{style}</style>\n</head>\n<body>\n",
-        hash::source(&style),
-        escape(title)
-    )
-}
-
-/// The style of the page and that of its drawings.
-fn style(rules: &str) -> String {
-    format!("{STYLE}\n{}\n{rules}", render::svg::STYLE)
+    page::head(title, &format!("{}\n{}\n{rules}", page::STYLE, render::svg::STYLE), SCRIPT, out)
 }
 
 /// The bar at the top: title, search, buttons.

@@ -4,13 +4,13 @@ use std::fmt;
 
 /// A text that shows in a page, as content or in a quoted attribute, exactly as it is: marks have no meaning,
 /// control characters are spelled out. Line ends stay.
-pub fn escape(text: &str) -> Escaped<'_> {
+pub(crate) fn escape(text: &str) -> Escaped<'_> {
     Escaped(text)
 }
 
 /// See [`escape`].
 #[derive(Clone, Copy, Debug)]
-pub struct Escaped<'a>(&'a str);
+pub(crate) struct Escaped<'a>(&'a str);
 
 impl fmt::Display for Escaped<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
