@@ -241,6 +241,98 @@ const MX: Family = Family::MicroLogix1400;
 const S3: Family = Family::Slc503;
 
 #[test]
+fn gray_code_and_division_of_the_register() {
+    check(MX, &["GCD N7:0 N7:1", "GCD N7:0 N7:0", "GCD B3:2 N7:1"], Verdict::Exact);
+    for flags in ["", "MOV S:0 N11:0"] {
+        for wrap in [false, true] {
+            let rungs = format!("GCD N7:0 N7:1\n{flags}\n{TRAP}");
+            assert_eq!(run(&Case { family: MX, wrap, rungs }, 200, 5).into_iter().max(), Some(Verdict::Exact));
+        }
+    }
+    // The register from data of the program, from a product, and what is left in it.
+    for before in
+        ["MOV N7:0 S:13 MOV N7:1 S:14", "MUL N7:0 N7:1 N7:2", "MOV N7:0 S:13 CLR S:14", "MUL N7:0 N7:1 N7:2 MOV 0 S:5"]
+    {
+        for divide in [
+            "DDV N7:3 N7:4",
+            "DDV 7 N7:4",
+            "DDV -3 N7:4",
+            "DDV 0 N7:4",
+            "DDV N7:3 N7:3",
+            "DDV S:13 N7:4",
+            "DDV N7:3 S:14",
+        ] {
+            for (behind, wrap) in [("", false), ("MOV S:13 N11:1 MOV S:14 N11:2 MOV S:0 N11:3", true)] {
+                let rungs = format!("{before}\n{divide}\n{behind}\n{TRAP}");
+                let verdicts = run(&Case { family: S3, wrap, rungs }, 150, 17);
+                assert_eq!(verdicts.into_iter().max(), Some(Verdict::Exact), "{before} {divide} {behind}");
+            }
+        }
+    }
+}
+
+#[test]
+fn strings_are_joined_and_begin_with_their_contents() {
+    let mut image =
+        image(&Case { family: MX, wrap: false, rungs: "ACN ST9:0 ST9:1 ST9:2\nACN ST9:1 ST9:0 ST9:1\n".to_owned() });
+    image.data_files.retain(|file| file.number != 9);
+    let mut strings = DataFile::new(FileType::ST, 9, 4);
+    for (element, text) in [(0, "50 % \"ok\" $5"), (1, "\tb"), (3, "kept")] {
+        let bytes: Vec<u8> = text.chars().map(|c| c as u8).collect();
+        strings.words[element * 42] = bytes.len() as u16;
+        for (index, byte) in bytes.iter().enumerate() {
+            strings.words[element * 42 + 1 + index / 2] |= u16::from(*byte) << if index % 2 == 0 { 8 } else { 0 };
+        }
+    }
+    image.data_files.push(strings);
+    let migration = migrate::migrate(&image, &[], &Options::default()).expect("it migrates");
+    assert!(migration.rungs.iter().all(|rung| rung.verdict == Verdict::Condition), "{:?}", migration.rungs);
+    let reading = domore::text::read(&domore::text::write(&migration.project)).expect("the text is read back");
+    assert!(reading.diagnostics.is_empty(), "{:?}", reading.diagnostics);
+    let program = engine::Program::compile(&reading.project, &engine::Options::default()).expect("it compiles");
+    let mut domore = engine::Machine::new(program);
+    let mut slc = sim::Machine::new(sim::Program::compile(&image, &sim::Options::default()).expect("it compiles"));
+    domore.enter_run();
+    slc.enter_run();
+    for scan in 0..3 {
+        slc.scan(std::time::Duration::from_millis(10));
+        domore.scan(std::time::Duration::from_millis(10));
+        for element in 0..4 {
+            let address = Address::parse(&format!("ST9:{element}")).expect("an address");
+            let Ok(Value::Text(own)) = slc.get(&address) else { panic!("{address}") };
+            let other = domore.get(&format!("SL{element}")).expect("a string");
+            assert_eq!(other, engine::Value::Text(own), "scan {scan}, {address}");
+        }
+    }
+    let person = |rung: &str| {
+        let image = with_strings(rung);
+        let migration = migrate::migrate(&image, &[], &Options::default()).expect("it migrates");
+        assert_eq!(migration.rungs[0].verdict, Verdict::Person, "{rung}");
+        migration.rungs[0].notes[0].to_string()
+    };
+    for (rung, code, why) in [
+        ("ASR ST9:0 ST9:1 OTE B3:0/0", "STRING", "compares two strings"),
+        ("ASC ST9:0 1 ST9:1 N7:0", "STRING", "looks for a string"),
+        ("AEX ST9:0 1 2 ST9:1", "STRING", "takes a part"),
+        ("ACI ST9:0 N7:0", "STRING", "reads a number"),
+        ("AIC N7:0 ST9:0", "STRING", "writes a number"),
+        ("ARD 0 ST9:0 R6:0 10 0 0", "NO-EQUAL", "serial port"),
+        ("MOV ST9:0.LEN N7:0", "STRING", "no numbers here"),
+    ] {
+        let found = person(rung);
+        assert!(found.starts_with(code) && found.contains(why), "{rung}: {found}");
+    }
+}
+
+/// A rung with a file of strings.
+fn with_strings(rung: &str) -> Image {
+    let mut image = image(&Case { family: MX, wrap: false, rungs: rung.to_owned() });
+    image.data_files.retain(|file| file.number != 9);
+    image.data_files.push(DataFile::new(FileType::ST, 9, 4));
+    image
+}
+
+#[test]
 fn words_are_computed_exactly() {
     check(
         S3,

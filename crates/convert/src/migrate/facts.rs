@@ -53,6 +53,10 @@ impl Facts {
                 facts.address(address);
             }
             facts.timer_writes(instruction);
+            // It divides the math register, which no operand names.
+            if instruction.mnemonic == "DDV" {
+                facts.status.extend([13, 14]);
+            }
         }
         facts
     }

@@ -22,6 +22,7 @@ pub(super) const TABLE: &[Row] = &[
     row("SUB", |cx, e, i| sum(cx, e, i, true)),
     row("MUL", multiply),
     row("DIV", divide),
+    row("DDV", double_divide),
     row("NEG", negate),
     row("ABS", absolute),
     row("CLR", clear),
@@ -202,6 +203,55 @@ fn divide(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
                 store(cx, e);
             });
         }
+    }
+    Ok(())
+}
+
+/// Beyond this the quotient by any word leaves the range of words, and half a divisor more still fits 32 bits.
+const FAR: i64 = 1_100_000_000;
+
+/// DDV: the math register by a word. What 16 bits do not hold stores 32767 with the trap, whatever its sign and
+/// S:2/14, and leaves the register alone.
+fn double_divide(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
+    let (divisor, to) = unary(cx, i)?;
+    if divisor.width != Width::Word || to.width != Width::Word {
+        return Err(Person::new(Mark::Operand, "DDV of other than words"));
+    }
+    let (low, high) = (cx.status_word(13), cx.status_word(14));
+    let long = cx.scratch_long(2);
+    e.math(&long, &format!("{high} * 65536 + ({low} & 65535)"));
+    let dividend = Value::element(long.clone(), Width::Long);
+    let divisor = held(cx, e, &divisor, 3);
+    let near = cx.scratch_long(13);
+    e.math(&near, &format!("IF({long} > {FAR}, {FAR}, IF({long} < -{FAR}, -{FAR}, {long}))"));
+    let near = Value::element(near, Width::Long).bounded(-FAR, FAR);
+    let top = Value::integer(32_768);
+    let rounded = match divisor.known() {
+        Some(0) => top.clone(),
+        _ => quotient(cx, e, &near, &divisor, 32_768),
+    };
+    let rounded = settled(e, &rounded, &cx.scratch_long(14));
+    // The destination can be the register.
+    let fits = cx.scratch_bit(91);
+    let keeps = has_register(cx) && divisor.known() != Some(0);
+    if keeps {
+        e.when(|e| {
+            e.and_compare(Relation::LessOrEqual, rounded.text(), "32767");
+            e.and_compare(Relation::GreaterOrEqual, rounded.text(), "-32768");
+            e.hold(&fits);
+        });
+    }
+    let result = choose(&relation(&rounded, "<", &Value::integer(-32_768)), &top, &rounded);
+    integer_as(cx, e, &result.bounded(-32_768, FAR), &Carry::Off, &to, &Wrap::Never);
+    if keeps {
+        let whole = truncated(&near, &divisor);
+        e.when(|e| {
+            e.and(&fits);
+            let whole = settled(e, &whole, &cx.scratch_long(4)).bounded(-32_768, 32_768);
+            let rest = dividend.minus(&whole.times(&divisor));
+            register(cx, e, &rest, &super::value::wrapped(&whole));
+            e.reset(&fits);
+        });
     }
     Ok(())
 }

@@ -41,6 +41,7 @@ mod scale;
 mod sequencer;
 mod status;
 mod store;
+mod strings;
 mod table;
 mod timers;
 mod value;

@@ -23,6 +23,7 @@ pub(super) const TABLE: &[Row] = &[
     row("FRD", from_bcd),
     row("DCD", decode),
     row("ENC", encode),
+    row("GCD", from_gray),
 ];
 
 fn mov(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
@@ -251,6 +252,25 @@ fn wrong(bits: &str, place: u32) -> String {
         1 => format!("IF({bits} % 16 > 9, 1, 0)"),
         _ => format!("IF(({bits} / {place}) % 16 > 9, 1, 0)"),
     }
+}
+
+/// GCD: Gray code to an integer. A source with its high bit set is beyond 32767: the limit and the trap, whatever
+/// S:2/14 says.
+fn from_gray(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
+    let (source, to) = unary(cx, i)?;
+    if source.width != Width::Word || to.width != Width::Word {
+        return Err(Person::new(Mark::Operand, "GCD of other than words"));
+    }
+    let bits = cx.scratch_long(2);
+    e.math(&bits, low_word(&source).text());
+    for shift in [256, 16, 4, 2] {
+        // Without a sign, so that dividing shifts and what both have in common is never more than either.
+        let shifted = format!("({bits} / {shift})");
+        e.math(&bits, &format!("({bits} | {shifted}) - ({bits} & {shifted})"));
+    }
+    let value = Value::element(bits, Width::Long).bounded(0, 65_535);
+    integer_as(cx, e, &value, &Carry::Off, &to, &Wrap::Never);
+    Ok(())
 }
 
 /// DCD: one bit set, the one numbered by the low four bits of the source.

@@ -219,7 +219,12 @@ impl Context<'_> {
         if matches!(span.at.block, Block::D | Block::R | Block::Sl) {
             let width = if span.at.block == Block::R { Width::Float } else { Width::Long };
             if span.at.block == Block::Sl {
-                return Err(Person::new(Mark::Text, format!("{address} is a string, a number is needed")));
+                return Err(Person::new(
+                    Mark::Text,
+                    format!(
+                        "{address}: length and characters of a string are words of the original, and no numbers here"
+                    ),
+                ));
             }
             let element = self.places.element(file_type, file, word).ok_or_else(|| missing(address))?;
             return Ok(Target { text: element.to_string(), width, plain: true });

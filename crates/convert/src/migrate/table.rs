@@ -4,7 +4,7 @@ use ladder::Instruction;
 
 use super::context::{Context, Convert};
 use super::emit::Contact;
-use super::{bits, compare, control, counters, files, interrupts, math, moves, sequencer, timers};
+use super::{bits, compare, control, counters, files, interrupts, math, moves, sequencer, strings, timers};
 
 /// One instruction.
 #[derive(Clone, Copy)]
@@ -33,6 +33,7 @@ const TABLES: &[&[Row]] = &[
     moves::TABLE,
     files::TABLE,
     sequencer::TABLE,
+    strings::TABLE,
     control::TABLE,
     interrupts::TABLE,
 ];
