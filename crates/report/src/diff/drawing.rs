@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use analysis::diff::{Edit, EditKind, Word};
 use render::svg::{self, Change, Mark};
 
-use super::page::is_on;
 use crate::Rung;
 use crate::page::escape;
 
@@ -46,7 +45,8 @@ fn marks(edits: &[Edit], is_old: bool) -> Vec<(u32, Change)> {
             EditKind::Deleted => Change::Deleted,
             _ => Change::Changed,
         };
-        Some((is_on(edit, is_old)?, mark))
+        let number = if is_old { edit.old_instruction } else { edit.new_instruction };
+        Some((number?, mark))
     };
     let mut all: Vec<(u32, Change)> = edits.iter().filter_map(mark).collect();
     all.dedup();
