@@ -28,7 +28,12 @@ fn difference(old: &Image, new: &Image) -> Difference {
 }
 
 /// Writes a clean merge and reads it back.
-fn written(ours: &(rss::Project, Project), theirs: &rss::Project, merged: &Merge) -> Result<Image, String> {
+fn written(
+    base: &rss::Project,
+    ours: &(rss::Project, Project),
+    theirs: &rss::Project,
+    merged: &Merge,
+) -> Result<Image, String> {
     let files: Vec<FileSource> = merged
         .files
         .iter()
@@ -57,7 +62,7 @@ fn written(ours: &(rss::Project, Project), theirs: &rss::Project, merged: &Merge
         io: theirs_part(parts.io),
         channels: theirs_part(parts.channels),
     };
-    let sides = Sides { ours: &ours.0, theirs, image: &ours.1.main };
+    let sides = Sides { base, ours: &ours.0, theirs, image: &ours.1.main };
     let built = merged_file(sides, &files, &merged.image, whole).map_err(|error| error.to_string())?;
     let bytes = built.file.write().map_err(|error| error.to_string())?;
     let back = rss::Project::read(&bytes, Mode::Permissive).map_err(|error| error.to_string())?;
@@ -110,7 +115,7 @@ fn what_only_one_side_changed_is_taken_over_whole() {
             );
             let found = without_id(difference(&b.1.main, &merged.image));
             assert!(found.is_empty(), "{name}: {found:?}");
-            match written(ours, &theirs.0, &merged) {
+            match written(&a.0, ours, &theirs.0, &merged) {
                 Ok(back) => {
                     let found = difference(&merged.image, &back);
                     assert!(found.is_empty(), "{name}: written: {found:?}");

@@ -46,7 +46,7 @@ pub fn run(arguments: &MergeArguments) -> Result<Outcome, Error> {
         }
         return Ok(Outcome::Finding);
     }
-    let bytes = match built(ours, theirs, &merged) {
+    let bytes = match built([base, ours, theirs], &merged) {
         Ok(None) => return Ok(Outcome::Done),
         Ok(Some((bytes, notes))) => {
             notes.iter().for_each(|note| say(note));
@@ -80,10 +80,7 @@ fn open(path: &Path) -> Result<Opened, String> {
 type Written = (Vec<u8>, Vec<String>);
 
 /// The result as a project file; `None` if it is ours as it stands.
-fn built(ours: &Opened, theirs: &Opened, merged: &Merge) -> Result<Option<Written>, String> {
-    if ours.project.main == merged.image {
-        return Ok(None);
-    }
+fn built([base, ours, theirs]: [&Opened; 3], merged: &Merge) -> Result<Option<Written>, String> {
     let files: Vec<FileSource> = merged
         .files
         .iter()
@@ -97,9 +94,12 @@ fn built(ours: &Opened, theirs: &Opened, merged: &Merge) -> Result<Option<Writte
     let parts = merged.parts;
     let whole =
         Whole { processor: is_theirs(parts.processor), io: is_theirs(parts.io), channels: is_theirs(parts.channels) };
-    let sides = Sides { ours: &ours.file, theirs: &theirs.file, image: &ours.project.main };
+    let sides = Sides { base: &base.file, ours: &ours.file, theirs: &theirs.file, image: &ours.project.main };
     let written = merged_file(sides, &files, &merged.image, whole).map_err(|error| error.to_string())?;
     let bytes = written.file.write().map_err(|error| error.to_string())?;
+    if ours.file.write().is_ok_and(|before| before == bytes) {
+        return Ok(None);
+    }
     // What was written must say what was merged, whatever the writer knows.
     let back = rss::Project::read(&bytes, Mode::Permissive).map_err(|error| error.to_string())?;
     let back = convert::from_rss::project(&back, Source::default());

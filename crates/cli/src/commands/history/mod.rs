@@ -7,11 +7,12 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
 use analysis::history::{Entry, Machine, Order, Save, Step, machines, steps};
+use convert::AnyProject;
 use jiff::Timestamp;
 use ladder::{Project, Severity};
 use serde_json::{Value, json};
 
-use super::{diagnostics_json, diff, file_name, mode, open};
+use super::{MOST_BYTES, diagnostics_json, diff, file_name, mode, open, read_file};
 use crate::args::HistoryArguments;
 use crate::files;
 use crate::listing;
@@ -102,8 +103,15 @@ fn read(arguments: &HistoryArguments, terminal: bool, out: &mut dyn Write) -> Re
     let mut outcome = Outcome::Done;
     for path in paths {
         bar.set_message(path.display().to_string());
-        match open(&path, mode(arguments.strict)) {
-            Ok(project) => {
+        let found = read_file(&path, MOST_BYTES).and_then(|bytes| {
+            convert::open_any(&bytes, &file_name(&path), mode(arguments.strict)).map_err(|error| error.to_string())
+        });
+        match found {
+            Ok(AnyProject::Domore(_)) => {
+                let name = path.display().to_string();
+                bar.suspend(|| eprintln!("{}", printable(&format!("{name}: left out: a program of Do-more"))));
+            }
+            Ok(AnyProject::Rslogix(project)) => {
                 let modified = std::fs::metadata(&path).and_then(|data| data.modified()).ok();
                 let modified = modified.and_then(|time| Timestamp::try_from(time).ok());
                 let seconds = modified.and_then(|time| Timestamp::from_second(time.as_second()).ok());

@@ -54,9 +54,11 @@ pub struct Whole {
     pub channels: bool,
 }
 
-/// Both projects with what was read of ours.
+/// The projects with what was read of ours.
 #[derive(Clone, Copy, Debug)]
 pub struct Sides<'a> {
+    /// The project both were made of.
+    pub base: &'a rss::Project,
     /// The project that is merged into.
     pub ours: &'a rss::Project,
     /// The project that is merged.
@@ -79,6 +81,9 @@ pub fn merged_file(sides: Sides<'_>, files: &[FileSource], merged: &Image, whole
         let mut comments = documentation::Comments::new(&databases.0);
         let programs = programs(&both, files, merged, &mut comments)?;
         let database = documentation::database(&databases, comments, &merged.documentation)?;
+        if databases.0.groups != databases.1.groups {
+            notes.note("symbol groups", "differ: those of ours stay");
+        }
         set(&mut file, StreamKind::ProgramFiles, &programs)?;
         set(&mut file, StreamKind::MemDatabase, &database)?;
     }
@@ -105,6 +110,7 @@ pub fn merged_file(sides: Sides<'_>, files: &[FileSource], merged: &Image, whole
             }
         }
     }
+    streams(sides, &mut file, &mut notes)?;
     if sides.image.processor.program_id != merged.processor.program_id && !whole.processor {
         notes.note("processor", "the program ID is that of ours");
     }
@@ -113,6 +119,39 @@ pub fn merged_file(sides: Sides<'_>, files: &[FileSource], merged: &Image, whole
         notes.note(name, "is that of ours: it was not merged");
     }
     Ok(Built { file, notes: notes.0 })
+}
+
+/// Streams that are taken whole: what RSLogix keeps beside the program for people.
+const BESIDE: [StreamKind; 12] = [
+    StreamKind::RevisionNotes,
+    StreamKind::CustomDataMonitors,
+    StreamKind::GraphicFiles,
+    StreamKind::RecipeFiles,
+    StreamKind::RcpHolder,
+    StreamKind::Trends,
+    StreamKind::DataLogging,
+    StreamKind::ReportOptions,
+    StreamKind::ReportOptions5,
+    StreamKind::ReportOptionSetup,
+    StreamKind::Pc5Options,
+    StreamKind::SourceControl,
+];
+
+/// Takes over what only theirs changed beside the program, and tells what both did.
+fn streams(sides: Sides<'_>, file: &mut rss::Project, notes: &mut Notes) -> Result<()> {
+    let payload = |project: &'_ rss::Project, kind| -> Option<Vec<u8>> {
+        project.stream(ImageKind::Main, kind).map(|stream| stream.payload().to_vec())
+    };
+    for kind in BESIDE {
+        let [base, ours, theirs] = [sides.base, sides.ours, sides.theirs].map(|project| payload(project, kind));
+        let Some(new) = theirs.as_deref().filter(|_| theirs != base && theirs != ours) else { continue };
+        if ours == base {
+            file.set_payload(ImageKind::Main, kind, new)?;
+        } else {
+            notes.note(kind.name(), "was changed on both sides: that of ours stays");
+        }
+    }
+    Ok(())
 }
 
 /// A stream of the main image, whole.
