@@ -42,7 +42,7 @@ const CHORES: &[Chore] = &[
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
     Chore {
         name: "nightly",
-        help: "at length: 10,000 random programs against the interpreter, 10,000 scans and a report of every project, 200 mutants of every proven one",
+        help: "at length: 10,000 random programs against the interpreter, 10,000 scans and a report of every project, 200 mutants and 100,000 scans of every proven one",
         run: |_| nightly(),
     },
     Chore {
@@ -155,6 +155,10 @@ fn nightly() -> Outcome {
     }
     let mut reports = cargo_command(&["test", "--release", "--package", "rungs-tests", "--test", "report_pdf"]);
     run(reports.args(["--", "--nocapture"]).env("RUNGS_REPORTS", "all"))?;
+    let mut coverage = cargo_command(&["test", "--release", "--package", "analysis", "--test", "coverage"]);
+    run(coverage.args(["--", "--nocapture"]).env("RUNGS_SCANS", "100000"))?;
+    let mut impossible = cargo_command(&["test", "--release", "--package", "analysis", "--test", "impossible"]);
+    run(impossible.args(["--", "--nocapture"]).env("RUNGS_CASES", "3000").env("RUNGS_RUNGS", "150"))?;
     let mut mutants = cargo_command(&["test", "--release", "--package", "analysis", "--test", "mutants"]);
     run(mutants.args(["--", "--nocapture"]).env("RUNGS_MUTANTS", "200"))
 }

@@ -39,6 +39,7 @@ mod layout;
 mod machine;
 mod op;
 mod options;
+pub mod outline;
 mod outside;
 mod peer;
 mod program;

@@ -9,6 +9,7 @@ use super::random::Random;
 use super::side::{Kind, Seen, Side, Slc};
 use super::solve::{Plan, Solver};
 use super::tape::{Head, Set, Tape};
+use super::unreachable::{self, Surroundings};
 
 /// How the two sides differ.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +62,11 @@ pub(crate) struct Campaign<'c, B: Side> {
     /// What the other side's instructions did.
     pub(crate) seen: Seen,
     solver: &'c Solver<'c>,
+    surroundings: &'c Surroundings<'c>,
+    /// Data of the original behind stretches, for arguments about what cannot happen.
+    states: Vec<Vec<u16>>,
+    /// Why nothing could be argued.
+    pub(crate) unargued: Option<&'static str>,
     random: Random,
     corpus: Vec<Entry<B>>,
     /// Scans since the state the present episode began from.
@@ -90,6 +96,10 @@ pub(crate) struct Campaign<'c, B: Side> {
 
 /// States kept.
 const MOST_ENTRIES: usize = 3000;
+/// States looked at for arguments, besides those kept.
+const MOST_STATES: usize = 1000;
+/// The part of all scans after which is argued for the first time.
+const FIRST_ARGUMENT: u64 = 8;
 /// Scans from power-up to a state that is gone on from.
 const DEEPEST: usize = 30_000;
 /// Scans of a long wait, and the part of all scans it may take if that is more.
@@ -111,7 +121,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         pairs: &'c Pairs,
         inputs: &'c Inputs<B::Target>,
         goals: Goals,
-        solver: &'c Solver<'c>,
+        (solver, surroundings): (&'c Solver<'c>, &'c Surroundings<'c>),
         presets: Vec<(u32, u32)>,
         (seed, budget, short): (u64, u64, bool),
     ) -> Campaign<'c, B> {
@@ -123,6 +133,9 @@ impl<'c, B: Side> Campaign<'c, B> {
             inputs,
             goals,
             solver,
+            surroundings,
+            states: Vec::new(),
+            unargued: None,
             random: Random::new(seed),
             corpus: Vec::new(),
             tape: Tape::default(),
@@ -159,7 +172,13 @@ impl<'c, B: Side> Campaign<'c, B> {
         }
         self.each_input();
         let mut round = 0usize;
+        let mut argue_at = self.budget / FIRST_ARGUMENT;
         while self.open() {
+            if self.scans >= argue_at {
+                // What cannot happen is no aim for the rest of the run.
+                self.rule_out();
+                argue_at = u64::MAX;
+            }
             self.begin();
             match round % 8 {
                 0..3 => self.aim(),
@@ -178,6 +197,16 @@ impl<'c, B: Side> Campaign<'c, B> {
             }
             round += 1;
         }
+        if self.found.is_none() {
+            self.rule_out();
+        }
+    }
+
+    /// Looks for goals that no run can reach.
+    fn rule_out(&mut self) {
+        let kept = self.corpus.iter().map(|entry| entry.both.a.machine.data());
+        let states: Vec<&[u16]> = kept.chain(self.states.iter().map(Vec::as_slice)).collect();
+        self.unargued = unreachable::rule_out(&mut self.goals, self.surroundings, &states);
     }
 
     fn open(&self) -> bool {
@@ -191,6 +220,9 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     /// Starts an episode from a state seen before, newer and less used ones more often.
     fn begin(&mut self) {
+        if self.states.len() < MOST_STATES && self.both.a.stopped().is_none() {
+            self.states.push(self.both.a.machine.data().to_vec());
+        }
         self.episodes += 1;
         let count = self.corpus.len();
         let mut best = 0;
@@ -234,7 +266,10 @@ impl<'c, B: Side> Campaign<'c, B> {
     fn scan(&mut self, program_run: bool, dt: u32) {
         let dt = if program_run { 0 } else { dt.min(if self.short { SHORT_PACE } else { u32::MAX }) };
         for set in self.pending.drain(..) {
-            self.tape.set(set);
+            let written = self.inputs.all.get(usize::from(set.0)).is_some_and(|input| input.written);
+            if !(program_run && written) {
+                self.tape.set(set);
+            }
         }
         self.tape.push(program_run, dt);
         let last = self.tape.len() - 1;
@@ -381,7 +416,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         };
         for _ in 0..1 + self.random.below(4) {
             let plan = self.solver.plan(&goal, &self.both.a, &mut self.random);
-            if plan.sets.is_empty() && plan.wait == 0 {
+            if plan.sets.is_empty() && plan.wait == 0 && plan.hold == 0 {
                 return self.wander();
             }
             self.carry_out(&plan);
@@ -420,6 +455,7 @@ impl<'c, B: Side> Campaign<'c, B> {
                 self.scans_of(1);
             }
         }
+        self.scans_of(plan.hold.into());
         self.pass(plan.wait);
     }
 

@@ -64,7 +64,7 @@ pub struct Goal {
     /// The instruction as text.
     pub text: String,
     /// Why it cannot happen, by argument from the program.
-    pub impossible: Option<&'static str>,
+    pub impossible: Option<String>,
     /// It happened.
     pub reached: bool,
 }
@@ -101,7 +101,7 @@ impl Source {
 
 /// Looked at after every scan until it has shown everything.
 #[derive(Clone, Copy, Debug)]
-enum Monitor {
+pub(crate) enum Monitor {
     /// A done bit, with the numbers of the goals done and not done.
     Done(u32, usize, usize),
     /// A comparison, with the number of its first goal: equal, below, above.
@@ -200,6 +200,7 @@ impl Goals {
 
     fn add(&mut self, location: Location, kind: GoalKind, text: &str, impossible: Option<&'static str>) -> u32 {
         let number = self.all.len() as u32;
+        let impossible = impossible.map(str::to_owned);
         self.all.push(Goal { location, kind, text: text.to_owned(), impossible, reached: false });
         number
     }
@@ -242,6 +243,17 @@ impl Goals {
                 index += 1;
             }
         }
+    }
+
+    /// What is looked at behind every scan.
+    pub(crate) fn monitors(&self) -> &[Monitor] {
+        &self.monitors
+    }
+
+    /// Goals at contacts that reach this goal with them.
+    pub(crate) fn contacts_of(&self, number: usize) -> impl Iterator<Item = u32> {
+        let with = move |(_, reached): &(&u32, &Vec<u32>)| reached.iter().any(|one| *one as usize == number);
+        self.implied.iter().filter(with).map(|(contact, _)| *contact)
     }
 
     fn is_reached(&self, number: usize) -> bool {
@@ -316,8 +328,13 @@ impl Walk<'_> {
                 Element::Instruction(instruction) => always = self.one(instruction, always, known),
                 Element::Branch(branch) => {
                     let mut kept = branch.legs.is_empty() && always;
+                    let mut begins = known.clone();
                     for leg in &branch.legs {
-                        kept |= self.series(leg, always, &mut known.clone());
+                        kept |= self.series(leg, always, &mut begins.clone());
+                        // The next leg is executed behind this one.
+                        if !leg.iter().all(|element| self.reads_only(element)) {
+                            begins.clear();
+                        }
                     }
                     // A leg can have changed what was known.
                     let writes = branch.legs.iter().flatten().any(|e| !self.reads_only(e));
@@ -418,7 +435,10 @@ impl Walk<'_> {
             for kind in [GoalKind::Equal, GoalKind::JustBelow, GoalKind::JustAbove] {
                 self.goals.add(location, kind, text, dead);
             }
-            self.goals.monitors.push(Monitor::Compare(x, y, first));
+            // Values can be equal without anybody comparing them.
+            if dead.is_none() {
+                self.goals.monitors.push(Monitor::Compare(x, y, first));
+            }
         }
     }
 
@@ -431,7 +451,9 @@ impl Walk<'_> {
         if let Some((at, _)) = place {
             let done = self.goals.add(location, GoalKind::Done, text, dead);
             let not = self.goals.add(location, GoalKind::NotDone, text, dead);
-            self.goals.monitors.push(Monitor::Done(at, done as usize, not as usize));
+            if dead.is_none() {
+                self.goals.monitors.push(Monitor::Done(at, done as usize, not as usize));
+            }
         }
     }
 }

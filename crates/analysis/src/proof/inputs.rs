@@ -27,6 +27,8 @@ pub(crate) struct Input<T> {
     pub(crate) bounded: bool,
     /// A terminal; otherwise data a person or another device writes.
     pub(crate) terminal: bool,
+    /// The program can write it too: going to run resets it, so nobody writes it on the way there.
+    pub(crate) written: bool,
 }
 
 /// Inputs and what could not become one.
@@ -65,7 +67,8 @@ impl<T: Clone> Inputs<T> {
                 continue;
             }
             let accesses = xref.of(address);
-            if !is_input(address, &accesses) {
+            let written = !is_input(address, &accesses);
+            if written && !is_left_out(xref, address, &accesses) {
                 continue;
             }
             // A bit of a field of the clock: the field is what changes.
@@ -97,6 +100,9 @@ impl<T: Clone> Inputs<T> {
             values.sort_unstable();
             values.dedup();
             inputs.add(a, b, (text, other), (at, kind), values, bounded, address.file_type == FileType::I);
+            if let Some(added) = inputs.all.last_mut().filter(|added| written && added.at == at) {
+                added.written = true;
+            }
         }
         // Operators set counters: what follows must go on from there, up to the ends of their range.
         for address in counted(image) {
@@ -139,7 +145,19 @@ impl<T: Clone> Inputs<T> {
         };
         match (a.target(&original), b.target(&other)) {
             (Ok(own), Ok(target)) => {
-                self.all.push(Input { original, other, kind, at, a: own, b: target, values, bounded, terminal });
+                let written = false;
+                self.all.push(Input {
+                    original,
+                    other,
+                    kind,
+                    at,
+                    a: own,
+                    b: target,
+                    values,
+                    bounded,
+                    terminal,
+                    written,
+                });
             }
             (Err(why), _) | (_, Err(why)) => self.left_out.push((original, why)),
         }
@@ -203,6 +221,30 @@ fn is_input(address: &Address, accesses: &[Access<'_>]) -> bool {
         }
         _ => false,
     }
+}
+
+/// Data that the program writes only behind a RET that an operator's bit decides: while that leaves the
+/// rungs out, people write what they would, as with a map of inputs that is not wired yet.
+fn is_left_out(xref: &CrossReference<'_>, address: &Address, accesses: &[Access<'_>]) -> bool {
+    let data = matches!(address.file_type, FileType::B | FileType::N | FileType::F | FileType::L);
+    let mut writers = accesses.iter().filter(|access| access.role.writes()).peekable();
+    let operated = |it: &ladder::Instruction| {
+        let address = it.operands.first().and_then(Operand::address).filter(|address| address.is_direct());
+        let contact = matches!(it.mnemonic.name(), Some("XIC" | "XIO"));
+        contact
+            && address.is_some_and(|address| address.file_type != FileType::S && is_input(address, &xref.of(address)))
+    };
+    let returns = |rung: &ladder::Rung| {
+        let mut all: Vec<_> = rung.instructions().collect();
+        let last = all.pop().is_some_and(|it| it.mnemonic == "RET");
+        last && !all.is_empty() && all.into_iter().all(operated)
+    };
+    let behind = |access: &Access<'_>| {
+        let file = xref.image().program_file(access.location.file);
+        let before = file.and_then(|file| file.rungs.get(..access.location.rung as usize));
+        before.is_some_and(|rungs| rungs.iter().any(returns))
+    };
+    data && accesses.iter().any(|access| access.role.reads()) && writers.peek().is_some() && writers.all(behind)
 }
 
 fn clock_field(address: &Address) -> Option<(&'static str, u32, u32)> {

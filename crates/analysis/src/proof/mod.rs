@@ -23,8 +23,9 @@ mod side;
 mod solve;
 mod taint;
 mod tape;
+mod unreachable;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ladder::{Address, FileType, Image, Operand};
 
@@ -36,6 +37,7 @@ use minimize::Player;
 use pairs::Pairs;
 use scenario::Preset;
 use solve::Solver;
+use unreachable::Surroundings;
 
 pub use campaign::Difference;
 pub use check::{Refused, refused_domore, refused_slc};
@@ -220,7 +222,13 @@ fn prove<B: Side>(
         report.notes.push(why.to_owned());
     }
     let limits = (options.seed, options.scans, short);
-    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, &solver, timers(image, &base.a), limits);
+    let outline = base.a.machine.outline();
+    let places: Vec<_> = inputs.all.iter().map(|input| (input.at, input.kind)).collect();
+    let names = terminals(&xref, &base.a);
+    let loaded = base.a.machine.data();
+    let surroundings = Surroundings { outline: &outline, loaded, inputs: &places, names: &names };
+    let timers = timers(image, &base.a);
+    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, (&solver, &surroundings), timers, limits);
     campaign.run();
     report.take_run(&campaign, inputs.all.len());
     if let Some((difference, tape)) = campaign.found.take() {
@@ -313,6 +321,13 @@ fn has_timed_interrupt(image: &Image) -> bool {
     let period = ["S:30", "STI:0.SPM"].into_iter().filter_map(value).any(|value| value != ladder::Value::Word(0));
     let started = crate::instructions(image).any(|(_, it)| matches!(it.mnemonic.name(), Some("STS" | "STE")));
     named(EntryKind::TimedInterrupt) && (period || started)
+}
+
+/// Addresses of terminals by place: which slot a word belongs to does not show in its place.
+fn terminals(xref: &CrossReference<'_>, a: &Slc) -> BTreeMap<u32, String> {
+    let named = xref.named().into_iter().filter(|address| address.file_type.has_slots() && address.is_direct());
+    let place = |address: &Address| Some((a.place(&address.to_string()).ok()?.0, address.to_string()));
+    named.filter(|address| address.bit.is_some()).filter_map(place).collect()
 }
 
 /// Timers the program runs: place of PRE and milliseconds per count.

@@ -187,6 +187,9 @@ impl Report {
         self.other_missing = spots.collect();
         self.other_missing.dedup();
         self.goals.clone_from(&campaign.goals.all);
+        if let Some(why) = campaign.unargued {
+            self.notes.push(format!("what was not reached was not examined further: {why}"));
+        }
         if self.scans < 2 && campaign.found.is_none() {
             let why = match (self.scans, campaign.both.a.stopped()) {
                 (0, _) => "no scan was asked for: nothing was compared",
@@ -327,8 +330,10 @@ impl fmt::Display for Report {
         let goal = |goal: &Goal| format!("{} {} {}", goal.location, goal.text, goal.kind.as_str());
         let missing: Vec<String> = self.rungs().iter().flat_map(|rung| &rung.missing).map(goal).collect();
         list(f, "not reached", &missing)?;
-        let argued: Vec<String> =
-            self.impossible_goals().map(|it| format!("{}: {}", goal(it), it.impossible.unwrap_or_default())).collect();
+        let argued: Vec<String> = self
+            .impossible_goals()
+            .map(|it| format!("{}: {}", goal(it), it.impossible.as_deref().unwrap_or_default()))
+            .collect();
         list(f, "cannot be reached", &argued)?;
         list(f, "note", &self.notes)?;
         list(f, "the original is only approximated", &self.approximations[0])?;

@@ -28,6 +28,8 @@ enum Does {
     Reset,
     /// MOV, CLR and FLL of a constant.
     Store(i64),
+    /// ADD of a constant to the word itself: so much in every scan.
+    Step(i64),
     /// A one-shot's output.
     Pulse,
 }
@@ -60,10 +62,14 @@ pub(crate) struct Plan {
     pub(crate) wait: u64,
     /// Rising edges of the last input.
     pub(crate) pulses: u32,
+    /// Scans with these inputs: what counts scans needs them.
+    pub(crate) hold: u32,
 }
 
 /// Steps back from a goal at most.
 const DEEPEST: u32 = 14;
+/// Scans to hold inputs for at most.
+const LONGEST_HOLD: u32 = 2_500;
 /// Places looked at for one plan.
 const MOST_STEPS: u32 = 400;
 
@@ -119,6 +125,13 @@ impl<'a> Solver<'a> {
             }
             Some("CLR") if kind == Kind::Word => self.words.entry(at).or_default().push(writer(Does::Store(0))),
             _ => {}
+        }
+        if let (Some("ADD"), Some((to, Kind::Word | Kind::Long))) = (it.mnemonic.name(), place(2)) {
+            let step = |index: usize| it.operands.get(index).and_then(Operand::constant)?.as_integer();
+            let itself = |index: usize| place(index).is_some_and(|(at, _)| at == to);
+            if let Some(step) = step(1).filter(|_| itself(0)).or_else(|| step(0).filter(|_| itself(1))) {
+                self.words.entry(to).or_default().push(writer(Does::Step(step)));
+            }
         }
         let constant = it.operands.first().and_then(Operand::constant).and_then(|constant| constant.as_integer());
         if let (Some("MOV"), Some(value), Some((to, Kind::Word))) = (it.mnemonic.name(), constant, place(1)) {
@@ -287,6 +300,14 @@ impl Search<'_, '_> {
             return;
         }
         let writers = self.solver.bits.get(&at).map(Vec::as_slice).unwrap_or_default();
+        let word = at - at % 16;
+        if on && self.solver.words.contains_key(&word) && !writers.iter().any(|writer| can(writer.does, true)) {
+            // A bit of a word that counts: the next value that has it.
+            let bit = at % 16;
+            let now = i64::from(self.a.word(word));
+            self.number(word, (now | 1 << bit) >> bit << bit, depth);
+            return;
+        }
         let fits: Vec<&Writer> = writers.iter().filter(|writer| can(writer.does, on)).collect();
         let Some(writer) = self.random.pick(&fits).copied().copied() else { return };
         let Writer { file, rung, instruction, does } = writer;
@@ -366,6 +387,10 @@ impl Search<'_, '_> {
                 let counts = if value >= now { value - now } else { value };
                 self.plan.wait += u64::try_from(counts).unwrap_or(0) * u64::from(base);
             }
+            Does::Step(step) if step != 0 => {
+                let scans = (value - now) / step;
+                self.plan.hold = self.plan.hold.max(u32::try_from(scans).unwrap_or(0).min(LONGEST_HOLD) + 1);
+            }
             Does::Counter(_) => {
                 let counts = if value >= now { value - now } else { value };
                 self.plan.pulses = self.plan.pulses.max(u32::try_from(counts).unwrap_or(0));
@@ -395,7 +420,7 @@ fn can(does: Does, on: bool) -> bool {
         Does::Otl | Does::Pulse => on,
         Does::Otu | Does::Reset => !on,
         Does::Counter(_) => on,
-        Does::Store(_) => false,
+        Does::Store(_) | Does::Step(_) => false,
         Does::Ote | Does::TimerOn(..) | Does::TimerOff(..) | Does::Power => true,
     }
 }

@@ -49,14 +49,20 @@ pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
+/// The corpus, if it is here.
+#[allow(dead_code)]
+pub(crate) fn corpus() -> Option<PathBuf> {
+    let corpus = std::env::var_os("RUNGS_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
+    corpus.is_dir().then_some(corpus)
+}
+
 /// Our own examples, and if asked for the programs of the corpus that must be proven, as far as they are here.
 pub(crate) fn proven(with_corpus: bool) -> Vec<Migrated> {
     let own = ["motor/motor.SLC", "batch/batch.SLC", "traffic_light/traffic_light.SLC"];
     let mut paths: Vec<PathBuf> = own.iter().map(|path| root().join("examples").join(path)).collect();
-    let corpus = std::env::var_os("RUNGS_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
     if !with_corpus {
         // Our own only.
-    } else if corpus.is_dir() {
+    } else if let Some(corpus) = corpus() {
         paths.extend(CORPUS.iter().map(|path| corpus.join(path)));
     } else {
         println!("skipped: corpus not present");
