@@ -101,6 +101,61 @@ fn rungs_hold() {
     assert!(low.is_empty(), "below 90 %: {low:#?}");
 }
 
+/// What tells the machines of the plant archive apart: name and family of the processor, as many are called
+/// `UNTITLED`, and the name of the file without the number RSLogix gives its backups.
+fn machine(project: &ladder::Project, path: &Path) -> (String, &'static str, String) {
+    let processor = &project.main.processor;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_ascii_uppercase();
+    let name = stem.find("_BAK").map_or(stem.as_str(), |at| stem.get(..at).unwrap_or(""));
+    (processor.project_name.trim().to_owned(), processor.family.id(), name.to_owned())
+}
+
+#[test]
+fn newest_saves_of_the_plant_archive_hold() {
+    let Some(folder) = corpus::root() else { return };
+    let files = corpus::files(&folder.join("rslogix500"), ".rss").expect("the archive can be listed");
+    let mut newest: BTreeMap<_, (String, ladder::Project)> = BTreeMap::new();
+    for path in &files {
+        let Some(project) = read(path) else { continue };
+        let saved = project.source.saved_at.clone().unwrap_or_default();
+        let key = machine(&project, path);
+        if newest.get(&key).is_none_or(|known| known.0 < saved) {
+            newest.insert(key, (saved, project));
+        }
+    }
+    let mut families: BTreeMap<&str, [usize; 6]> = BTreeMap::new();
+    println!("  held  rungs  exact condition person  last save             machine");
+    for ((name, family, stem), (saved, project)) in &newest {
+        let migration = migrate::migrate(&project.main, &[], &Options::default()).expect("it migrates");
+        let rungs = migration.rungs.len();
+        let [exact, condition, person] =
+            [Verdict::Exact, Verdict::Condition, Verdict::Person].map(|verdict| migration.count(verdict));
+        let held = 100.0 * (exact + condition) as f64 / rungs.max(1) as f64;
+        println!("{held:5.1} % {rungs:6} {exact:6} {condition:9} {person:6}  {saved}  {name}, {family}, {stem}");
+        assert!(held >= 90.0 || rungs == 0, "{name}, {family}, {stem}: {held:.1} %");
+        assert!(migration.rungs.iter().all(|rung| rung.verdict == Verdict::Exact || !rung.notes.is_empty()));
+        // One save has no rungs at all.
+        let least = if rungs == 0 { 1000 } else { (10.0 * held) as usize };
+        let row = families.entry(family).or_insert([0, 0, 0, 0, 0, 1000]);
+        for (total, more) in row.iter_mut().zip([1, rungs, exact, condition, person]) {
+            *total += more;
+        }
+        row[5] = row[5].min(least);
+    }
+    println!("{} machines", newest.len());
+    for (family, [machines, rungs, exact, condition, person, least]) in &families {
+        let share = |part: usize| 100.0 * part as f64 / (*rungs).max(1) as f64;
+        println!(
+            "| {family} | {machines} | {rungs} | {:.1} % | {:.1} % | {:.1} % | {:.1} % |",
+            share(*exact),
+            share(*condition),
+            share(*person),
+            *least as f64 / 10.0
+        );
+    }
+    assert!(newest.len() > 50);
+}
+
 /// Scans of each program beside what it was migrated to.
 const SCANS: usize = 60;
 

@@ -106,6 +106,7 @@ impl Documented {
             description.push(format!("symbol {}", self.symbol));
         }
         description.extend(self.description.iter().cloned());
+        let description = description.iter().map(|line| visible(line)).collect();
         let (element, nickname) = (self.element.clone(), self.nickname.clone());
         ElementDoc { element, flags: Some(String::new()), nickname, description, ..ElementDoc::default() }
     }
@@ -283,7 +284,18 @@ fn wrapped(line: &str) -> Vec<String> {
         current.push_str(word);
     }
     lines.push(current);
-    lines.into_iter().map(|line| line.replace(['\t', '\r', '\n'], " ")).collect()
+    lines.into_iter().map(|line| visible(&line)).collect()
+}
+
+/// A text without what a line of Designer's text cannot hold: white space is a blank, any other control
+/// character its number.
+fn visible(text: &str) -> String {
+    let spelled = |c: char| match c {
+        '\t' | '\r' | '\n' => " ".to_owned(),
+        c if c.is_control() => format!("\\x{:02X}", u32::from(c)),
+        c => c.to_string(),
+    };
+    if text.contains(char::is_control) { text.chars().map(spelled).collect() } else { text.to_owned() }
 }
 
 #[cfg(test)]

@@ -180,7 +180,14 @@ impl Report {
     /// The report as JSON.
     pub fn json(&self) -> String {
         // A report holds nothing that JSON cannot.
-        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+        let plain = serde_json::to_string_pretty(self).unwrap_or_default() + "\n";
+        // JSON leaves DEL and the second set of control characters as they are; terminals may obey them.
+        let command = |c: char| c.is_control() && c != '\n';
+        if !plain.contains(command) {
+            return plain;
+        }
+        let spelled = |c: char| if command(c) { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+        plain.chars().map(spelled).collect()
     }
 
     /// The report as one HTML page that needs nothing else.

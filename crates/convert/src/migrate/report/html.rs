@@ -20,7 +20,8 @@ pub(super) fn page(report: &Report) -> String {
     // Writing to a string does not fail.
     let _ = write!(
         out,
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Migration of {0} to Do-more</title>\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n<title>Migration of {0} to Do-more</title>\n\
          <style>{STYLE}</style>\n</head>\n<body>\n<h1>Migration of {0} to Do-more</h1>\n",
         escaped(&report.file)
     );
@@ -166,11 +167,16 @@ fn escaped(text: &str) -> String {
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
             '\n' => out.push('\n'),
-            c if c.is_control() => out.push('\u{FFFD}'),
+            c if c.is_control() || turns(c) => out.push('\u{FFFD}'),
             c => out.push(c),
         }
     }
     out
+}
+
+/// Turns the direction of writing: what is shown would not be what is there.
+fn turns(c: char) -> bool {
+    matches!(c, '\u{061C}' | '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 #[cfg(test)]
