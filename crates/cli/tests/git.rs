@@ -272,7 +272,7 @@ fn a_history_is_the_same_repository_everywhere() {
     assert!(!shown.contains("commits"), "{shown}");
     let text = repository.rungs(&["history", "archive", "--full"], 0);
     assert!(!text.contains(['\u{9B}', '\u{1B}']), "{text}");
-    assert!(text.contains("3 files: 1 machines, 2 saves, 1 copies of the same bytes"), "{text}");
+    assert!(text.contains("3 files: 1 machine, 2 saves, 1 copy of the same bytes"), "{text}");
     assert!(text.contains("file 2 rung 2 changed: XIC, operand 1: T4:0/TT -> B3:0/5"), "{text}");
     let json = repository.rungs(&["history", "archive", "--json"], 0);
     let document: serde_json::Value = serde_json::from_str(&json).expect("one document");

@@ -73,7 +73,8 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
         let (machines, commits) = (commits.len(), in_time(commits));
         repository::write(target, &commits).map_err(Error::Use)?;
         if !arguments.json {
-            let line = format!("{}: {} commits, {machines} folders", target.display(), commits.len());
+            let (commits, folders) = (plural(commits.len(), "commit"), plural(machines, "folder"));
+            let line = format!("{}: {commits}, {folders}", target.display());
             writeln!(Printable(&mut out), "{line}")?;
         }
     }
@@ -174,7 +175,9 @@ impl Writer<'_> {
         let saves: usize = chosen.iter().map(|machine| machine.saves.len()).sum();
         let copies: usize = chosen.iter().flat_map(|machine| &machine.saves).map(|entry| entry.copies.len()).sum();
         let files = saves + copies;
-        writeln!(out, "{files} files: {} machines, {saves} saves, {copies} copies of the same bytes", chosen.len())?;
+        let copies = if copies == 1 { "1 copy".to_owned() } else { format!("{copies} copies") };
+        let (machines, saves) = (plural(chosen.len(), "machine"), plural(saves, "save"));
+        writeln!(out, "{}: {machines}, {saves}, {copies} of the same bytes", plural(files, "file"))?;
         Ok(())
     }
 
