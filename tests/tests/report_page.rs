@@ -128,6 +128,8 @@ fn keys_fold_theme_and_help() {
     let before = browser.run(&format!("return {back}"));
     browser.keys("t");
     browser.wait_for(&format!("{back} !== {before}"));
+    browser.run("document.getElementById('f-2').scrollIntoView()");
+    let _ = browser.screenshot("report_dark");
     // Arrows choose among what was found.
     browser.keys("/");
     browser.keys("timer");

@@ -117,7 +117,7 @@ fn several_projects_get_a_list() {
 #[test]
 fn a_do_more_project_has_a_report_too() {
     let folder = folder("domore");
-    let out = folder.join("r.html");
+    let out = folder.join("new/r.html");
     assert_eq!(code(&["report", "filling_domore/filling.txt", "--out", shown(&out)]), Some(0));
     let page = read(&out);
     for title in ["Controller", "Code Blocks", "Memory", "Element Documentation", "Cross Reference"] {

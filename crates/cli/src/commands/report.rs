@@ -164,7 +164,9 @@ impl Pages<'_> {
         if target.exists() && !self.arguments.force {
             return Err(format!("{} exists; --force overwrites it", target.display()));
         }
-        let written = std::fs::File::create(target).and_then(|file| {
+        let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let file = folder.map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::File::create(target));
+        let written = file.and_then(|file| {
             let mut file = BufWriter::with_capacity(1 << 16, file);
             content(&mut file)?;
             file.flush()
