@@ -63,7 +63,15 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
             return put_drawings(arguments, many, &opened.path, &rungs, &mut written.borrow_mut(), out);
         }
         // What could not be understood is carried, so that a text is whole in any case.
-        let bytes = domore::exported(opened, arguments)?;
+        let bytes = match domore::exported(opened, arguments) {
+            Ok(bytes) => bytes,
+            // A folder of both dialects: what the other one has no form for does not stop the rest.
+            Err(Error::Use(why)) if many => {
+                eprintln!("{}", printable(&format!("left out: {why}")));
+                return Ok(Outcome::Done);
+            }
+            Err(error) => return Err(error),
+        };
         put(&opened.path, &bytes, domore::ending(arguments), out)
     })
 }
