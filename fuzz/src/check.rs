@@ -158,6 +158,46 @@ fn write(project: &ladder::Project) {
     }
 }
 
+/// SLC text drawn as SVG, and the bytes as documentation of what it uses: nothing becomes markup.
+pub fn svg(bytes: &[u8]) {
+    let text = slc::decode(bytes);
+    let Ok(project) = slc::project::read(&text) else { return };
+    let image = &project.main;
+    let documentation = hostile(image, &text);
+    let width = bytes.first().map_or(0, |byte| usize::from(*byte));
+    let style = render::Style { state: true, ..render::Style::graphic(width) };
+    for file in image.ladder_files() {
+        for index in 0..file.rungs.len().min(50) {
+            let scene = render::scene(image, file, index, &documentation, &style);
+            let figure = render::figure::figure(&scene);
+            assert!(figure.width >= scene.width * render::figure::CELL_WIDTH);
+            let href = |address: &str| Some(format!("#{address}"));
+            let svg = render::svg::drawing(&scene, &render::svg::Options { href: &href, ..Default::default() });
+            // Without a style sheet only tags have these characters.
+            assert_eq!(svg.matches('<').count(), svg.matches('>').count(), "{svg}");
+            assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count(), "{svg}");
+            assert_eq!(svg.matches("<a ").count(), svg.matches("</a>").count(), "{svg}");
+            assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>") && !svg.contains("<script"), "{svg}");
+        }
+    }
+}
+
+/// A text as symbol and description of addresses of a program.
+fn hostile(image: &Image, text: &str) -> Documentation {
+    let mut documentation = image.documentation.clone();
+    let rungs = image.ladder_files().flat_map(|file| &file.rungs);
+    let addresses =
+        rungs.flat_map(|rung| rung.instructions()).flat_map(|i| i.operands.iter().filter_map(|o| o.address()));
+    for (address, line) in addresses.zip(text.lines()).take(100) {
+        documentation.add(ladder::AddressEntry {
+            target: ladder::Target::from(address),
+            symbol: line.chars().rev().take(30).collect(),
+            description: vec![line.to_owned(); 5],
+        });
+    }
+    documentation
+}
+
 /// Text as rungs and as a whole file.
 pub fn slc_text(bytes: &[u8]) {
     let text = slc::decode(bytes);
@@ -244,7 +284,8 @@ pub fn domore_text(bytes: &[u8]) {
     let style = render::Style::default();
     for block in document.project.code_blocks().take(4) {
         let last = 20.min(block.rungs.len());
-        render::domore::code_block(&mut io::sink(), block, Some(0..=last), &documentation, &style).expect("a sink takes all");
+        render::domore::code_block(&mut io::sink(), block, Some(0..=last), &documentation, &style)
+            .expect("a sink takes all");
     }
     convert::designer::write_json(&document, io::sink()).expect("a sink takes all");
     if let Ok(xref) = domore::xref::CrossReference::build(&document.project) {

@@ -96,8 +96,8 @@ pub struct Spot {
     pub leaves: Node,
     /// Its bit has a force in the project: forced on, or off.
     pub forced: Option<bool>,
-    /// What RSLogix highlights, if the style asks for it: a contact or coil whose bit in the data table is
-    /// such that it conducts, or drives. `None`: not asked for, or not known.
+    /// What RSLogix highlights, if the style asks for it: a contact that conducts or a coil whose bit is 1,
+    /// by the data table. `None`: not asked for, or not known.
     pub state: Option<bool>,
 }
 

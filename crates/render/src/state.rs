@@ -31,21 +31,54 @@ fn of_bit(force: Force, bit: u16) -> Option<bool> {
     if force.off & mask == 0 { Some(false) } else { (force.on & mask != 0).then_some(true) }
 }
 
-/// Whether RSLogix highlights an instruction: a contact that the bit in the data table lets conduct, a
-/// coil whose bit is as the coil makes it. `None` for other instructions and for bits that are not
-/// known from the file alone (indirect, indexed, beyond the end).
+/// Whether RSLogix highlights an instruction: a contact that the bit in the data table lets conduct, any
+/// coil whose bit is 1, an OTU too. Indirect addresses count as what their indices hold. `None` for other
+/// instructions and for bits that the project does not hold (indexed by S:24, beyond the end).
 pub(crate) fn shown(image: &Image, instruction: &Instruction) -> Option<bool> {
     let wanted = match instruction.mnemonic.name()? {
-        "XIC" | "OTE" | "OTL" => true,
-        "XIO" | "OTU" => false,
+        "XIC" | "OTE" | "OTL" | "OTU" => true,
+        "XIO" => false,
         _ => return None,
     };
     let [operand] = instruction.operands.as_slice() else { return None };
-    let address = operand.address().filter(|address| address.is_direct() && address.bit.is_some())?;
-    match image.value_at(address)? {
+    let address = operand.address().filter(|address| !address.indexed && address.bit.is_some())?;
+    match image.value_at(&resolved(image, address, 0)?)? {
         Value::Bit(bit) => Some(bit == wanted),
         _ => None,
     }
+}
+
+/// An address with the numbers that its indices hold in the data table now.
+fn resolved(image: &Image, address: &Address, depth: usize) -> Option<Address> {
+    if address.is_direct() {
+        return Some(address.clone());
+    }
+    // The language has one level of brackets.
+    if depth > 1 || address.indexed {
+        return None;
+    }
+    let number = |place: &Place| match place {
+        Place::Number(number) => Some(*number),
+        Place::Indirect(index) => match image.value_at(&resolved(image, index, depth + 1)?)? {
+            Value::Word(word) => u16::try_from(word).ok(),
+            _ => None,
+        },
+    };
+    let file = number(&address.file)?;
+    let mut element = number(&address.element)?;
+    let mut bit = address.bit.as_ref().map(number);
+    if let (Some(Place::Indirect(_)), Some(Some(number))) = (&address.bit, &mut bit) {
+        // An index counts bits on through the elements of the file.
+        let words = image.data_file(address.file_type, file)?.words_per_element;
+        let bits = words.checked_mul(16).filter(|bits| *bits > 0 && address.word.is_none())?;
+        element = element.checked_add(*number / bits)?;
+        *number %= bits;
+    }
+    let bit = match bit {
+        None => None,
+        Some(number) => Some(Place::Number(number?)),
+    };
+    Some(Address { file: Place::Number(file), element: Place::Number(element), bit, ..address.clone() })
 }
 
 #[cfg(test)]

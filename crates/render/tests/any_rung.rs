@@ -139,6 +139,23 @@ fn rungs_nested_too_deep_are_written_in_words() {
 }
 
 #[test]
+fn rungs_with_too_many_elements_are_written_in_words() {
+    let rung = |count: usize| Rung::new((0..count).map(|_| ins("XIC", "B3:0/7")).collect());
+    let words = |text: &str| text.matches("XIC").count();
+    // A contact has no mnemonic in a drawing.
+    assert_eq!(words(&drawn(rung(20_000))), 0, "the largest rung that is drawn");
+    let text = drawn(rung(20_001));
+    assert!(text.contains("more elements than a drawing can show"), "{}", text.get(..500).unwrap_or(&text));
+    assert_eq!(words(&text), 20_001);
+    assert!(text.lines().all(|line| columns(line) == 100));
+    // Branches and their legs count too, however they are spread.
+    let legs = |count: usize| Branch { legs: (0..count).map(|_| vec![ins("XIC", "B3:0/7")]).collect() };
+    let text = drawn(Rung::new(vec![Element::Branch(legs(5_000)), Element::Branch(legs(5_001))]));
+    assert!(text.contains("more elements than a drawing can show"));
+    assert_eq!((words(&text), text.matches("NXB").count()), (10_001, 9_999));
+}
+
+#[test]
 fn nothing_beyond_the_last_rung() {
     assert_eq!(render::rung(&image(), &file(Vec::new()), 3, &Documentation::default(), &Style::default()), "");
 }

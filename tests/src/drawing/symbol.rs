@@ -35,6 +35,8 @@ pub struct Instruction {
     pub symbol: Vec<String>,
     /// The description lines on pale yellow, from top to bottom.
     pub description: Vec<String>,
+    /// Green lies behind the wire at it: RSLogix shows it as true.
+    pub lit: bool,
     /// First line in a box: `Timer On Delay`.
     pub title: Option<String>,
     /// Rows of a box.
@@ -106,6 +108,7 @@ pub(super) fn recognise(sheet: &Sheet, left: f64, right: f64, y: f64) -> Option<
         module,
         symbol,
         description,
+        lit: lit(sheet, left, y),
         title: None,
         fields: Vec::new(),
     };
@@ -197,6 +200,7 @@ fn read_box(sheet: &Sheet, left: f64, y: f64, lower: f64) -> Option<Found> {
         module: None,
         symbol,
         description,
+        lit: lit(sheet, left, y),
         title,
         fields,
     };
@@ -238,6 +242,14 @@ fn strip(sheet: &Sheet, x: f64, y: f64) -> Option<&Fill> {
     sheet.fills.iter().find(|f| {
         let over = f.x0 <= x && x <= f.x1 && f.y0 < y && y < f.y1;
         over && matches!(f.colour, Colour::Green | Colour::PaleYellow) && f.y1 - f.y0 > ROW / 2.0 + 1.0
+    })
+}
+
+/// Whether green lies behind the wire left of `x`.
+fn lit(sheet: &Sheet, x: f64, y: f64) -> bool {
+    sheet.fills.iter().any(|f| {
+        let on = f.x0 < x - 2.0 && x - 2.0 < f.x1 && f.y0 < y && y < f.y1;
+        on && f.colour == Colour::Green && f.y1 - f.y0 <= ROW / 2.0 + 1.0
     })
 }
 

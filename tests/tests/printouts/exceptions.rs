@@ -15,6 +15,8 @@ const EXCEPTIONS: &[(&str, &str, usize, &str)] = &[
     ("free_running_clock_bit_14_live", "status", 6, RUNNING),
     ("free_running_clock_bit_14_live", "displayed", 7, RUNNING),
     ("free_running_clock_bit_14_live", "operands", 2, RUNNING),
+    ("free_running_clock_bit_14_live", "highlights", 12, RUNNING),
+    ("rtc_bit_1_live", "highlights", 2, RUNNING),
     ("rtc_bit_1_live", "values", 165, RUNNING),
     ("rtc_bit_1_live", "status", 9, RUNNING),
     ("rtc_bit_1_live", "displayed", 8, RUNNING),

@@ -38,6 +38,25 @@ pub(crate) fn operands(pair: &Pair<'_>) -> Outcome {
     })
 }
 
+/// Contacts and coils that are highlighted as true.
+pub(crate) fn highlights(pair: &Pair<'_>) -> Outcome {
+    let mut outcome = Outcome::default();
+    let documentation = &pair.whole.main.documentation;
+    let style = Style { state: true, ..Style::default() };
+    for both in pairs(pair, pair.image) {
+        let Some(file) = pair.image.program_file(both.file) else { continue };
+        let scene = render::scene(pair.image, file, both.number, documentation, &style);
+        for ((drawn, read), spot) in both.instructions().into_iter().zip(&scene.instructions) {
+            if drawn.shape != Drawn::Box {
+                let operands = || read.operands.iter().map(|o| format!(" {o}")).collect::<String>();
+                let place = format!("{both} {}{}", read.mnemonic, operands());
+                outcome.row(place, drawn.lit, spot.state == Some(true));
+            }
+        }
+    }
+    outcome
+}
+
 /// Compares the texts of some roles rung by rung, whatever their order on the line.
 fn compare(pair: &Pair<'_>, roles: &[Role], take: impl Fn(&Instruction, &mut Vec<String>)) -> Outcome {
     let mut outcome = Outcome::default();

@@ -41,6 +41,7 @@ const ASPECTS: &[(&str, Compare)] = &[
     ("boxes", faces::boxes),
     ("points", faces::points),
     ("operands", faces::operands),
+    ("highlights", faces::highlights),
 ];
 
 #[test]

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-/// Any text for the inside of an element or of a quoted attribute, in HTML and XML. Characters that XML
-/// does not allow become U+FFFD.
+/// Any text for the inside of an element or of a quoted attribute, in HTML and XML. Control characters and
+/// what XML does not allow become U+FFFD.
 pub fn escape(text: &str) -> Cow<'_, str> {
     let special = |c: char| matches!(c, '<' | '>' | '&' | '"' | '\'') || !allowed(c);
     if !text.contains(special) {
@@ -24,9 +24,9 @@ pub fn escape(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// The characters of XML 1.0.
+/// The characters of XML 1.0 that show, and white space.
 fn allowed(c: char) -> bool {
-    !matches!(c, '\0'..='\u{8}' | '\u{B}' | '\u{C}' | '\u{E}'..='\u{1F}' | '\u{FFFE}' | '\u{FFFF}')
+    matches!(c, '\t' | '\n' | '\r') || !(c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'))
 }
 
 #[cfg(test)]
@@ -37,6 +37,6 @@ mod tests {
     fn markup_is_text() {
         assert_eq!(escape("plain °C"), "plain °C");
         assert_eq!(escape("</text><script a=\"b'\">&"), "&lt;/text&gt;&lt;script a=&quot;b&#39;&quot;&gt;&amp;");
-        assert_eq!(escape("a\0b\u{1B}c\u{FFFF}\t\n"), "a\u{FFFD}b\u{FFFD}c\u{FFFD}\t\n");
+        assert_eq!(escape("a\0b\u{1B}c\u{9B}\u{FFFF}\t\n"), "a\u{FFFD}b\u{FFFD}c\u{FFFD}\u{FFFD}\t\n");
     }
 }
