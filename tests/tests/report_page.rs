@@ -59,6 +59,13 @@ fn search_follow_and_back() {
     browser.back();
     browser.wait_for(&format!("location.hash === {:?}", format!("#{entry}")));
     assert_in_sight(&browser, &entry);
+    // An address in a drawing leads to its entry.
+    browser.run(&format!("location.hash = {rung:?}"));
+    assert_in_sight(&browser, &rung);
+    browser.click(&format!("#{rung} svg a[href^='#x-']"));
+    browser.wait_for("location.hash.startsWith('#x-')");
+    let from_drawing = browser.run("return location.hash.slice(1)").as_str().unwrap_or_default().to_owned();
+    assert_in_sight(&browser, &from_drawing);
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
