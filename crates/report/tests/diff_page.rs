@@ -164,3 +164,19 @@ fn code_blocks_have_names_and_rungs_count_from_one() {
     let shown = written(&Side::domore(&old), &Side::domore(&read("PLC DM-SIM\n")), &gone, ("a.txt", "b.txt"));
     assert!(shown.contains("Program Fill <span>gone, 2 rungs"), "{shown}");
 }
+
+/// As many code blocks as a comparison takes: the page must not look at each beside each.
+#[test]
+fn many_code_blocks_end_quickly() {
+    let mut text = String::from("PLC DM-SIM\n");
+    for number in 0..20_000 {
+        text.push_str(&format!("\n$LGCMOD B{}\n\nSTR C{}\nOUT Y0\n\n$LGCEND B{0}\n", number / 2, number % 1000));
+    }
+    let project = domore::text::read(&text).expect("a program").project;
+    let start = std::time::Instant::now();
+    let difference = diff::compare_domore(&project, &project);
+    assert!(difference.is_empty(), "{:?}", difference.logic.first());
+    let shown = written(&Side::domore(&project), &Side::domore(&project), &difference, ("a.txt", "b.txt"));
+    assert!(shown.contains("20000 files without a change"));
+    assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
+}

@@ -63,18 +63,21 @@ pub fn chapters<'d>(sides: (&Side<'_>, &Side<'_>), difference: &'d Difference) -
     }
     let (left, right) = (sides.0.parts(), sides.1.parts());
     let taken: BTreeSet<u16> = was.values().copied().collect();
+    let by_number: BTreeMap<u16, &Part> = left.iter().rev().map(|part| (part.number, part)).collect();
+    let old_names = sides.0.known_by();
+    let same: BTreeMap<u16, u16> = sides
+        .1
+        .known_by()
+        .into_iter()
+        .filter_map(|(name, number)| Some((number, *old_names.get(&name)?)))
+        .filter(|(_, old)| !deleted.contains(old) && !taken.contains(old))
+        .collect();
     let partner = |part: &Part| -> Option<Part> {
         if inserted.contains(&part.number) {
             return None;
         }
-        let free = |other: &&Part| !deleted.contains(&other.number) && !taken.contains(&other.number);
-        match was.get(&part.number) {
-            Some(old) => left.iter().find(|other| other.number == *old).cloned(),
-            None => {
-                let same = |other: &&Part| sides.0.is_same(other.number, sides.1, part.number);
-                left.iter().filter(free).find(same).cloned()
-            }
-        }
+        let old = was.get(&part.number).or_else(|| same.get(&part.number))?;
+        by_number.get(old).map(|part| (*part).clone())
     };
     let mut all = Vec::new();
     for new in right {

@@ -1,5 +1,6 @@
 //! One of two programs that are compared, whatever its dialect: its rungs, drawn, and what places are called.
 
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use analysis::diff::Place;
@@ -162,18 +163,21 @@ impl<'a> Side<'a> {
         })
     }
 
-    /// Whether a part of this program is known by the same number or name as one of another program. Of several code
-    /// blocks of one name each is the one at its place among them.
-    pub(super) fn is_same(&self, number: u16, other: &Side<'_>, others: u16) -> bool {
-        let name = |side: &Side<'_>, number: u16| -> Option<(String, usize)> {
-            let Dialect::Domore { blocks, .. } = &side.dialect else { return None };
-            let block = side.block(number)?;
-            let before = blocks.iter().take(usize::from(number)).filter(|other| other.name == block.name).count();
-            Some((block.name.clone(), before))
+    /// Numbers of parts by what each is known by: its number, or its name and which of that name it is.
+    pub(super) fn known_by(&self) -> BTreeMap<(String, usize), u16> {
+        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+        let mut named = |name: String, number: u16| {
+            let count = seen.entry(name.clone()).or_default();
+            *count += 1;
+            ((name, *count), number)
         };
-        match (name(self, number), name(other, others)) {
-            (None, None) => number == others,
-            (a, b) => a == b,
+        match &self.dialect {
+            Dialect::Rslogix { image, .. } => {
+                image.ladder_files().map(|file| named(file.number.to_string(), file.number)).collect()
+            }
+            Dialect::Domore { blocks, .. } => {
+                (1..=u16::MAX).zip(blocks).map(|(number, block)| named(block.name.clone(), number)).collect()
+            }
         }
     }
 
