@@ -16,6 +16,8 @@ const GAP: f32 = 0.8;
 const LEADING: f32 = 1.25;
 /// A column that is cut into lines keeps this width in points.
 const NARROWEST: f32 = 30.0;
+/// Longer words are cut: symbols have up to 20 capitals. In sizes of letters.
+const LONG: f32 = 16.0;
 /// Fewer rows than this do not go side by side.
 const MANY: usize = 24;
 /// Most tables side by side.
@@ -106,6 +108,12 @@ fn font(kind: ColumnKind) -> Font {
     if kind == ColumnKind::Fixed { Font::Mono } else { Font::Sans }
 }
 
+/// The font of the title of a column. Numbers of bits stand above the bits.
+pub(super) fn heading(column: &crate::model::Column) -> Font {
+    let numbers = column.title.contains(' ') && column.title.chars().all(|c| c == ' ' || c.is_ascii_digit());
+    if numbers && column.kind == ColumnKind::Fixed { Font::MonoBold } else { Font::SansBold }
+}
+
 fn wish(table: &Table, index: usize) -> Wish {
     let Some(column) = table.columns.get(index) else { return Wish { most: 0.0, usual: 0.0, least: 0.0 } };
     let font = font(column.kind);
@@ -114,14 +122,17 @@ fn wish(table: &Table, index: usize) -> Wish {
     let mut widths: Vec<f32> = cells.iter().map(|cell| natural(cell, font, 1.0)).collect();
     widths.sort_unstable_by(f32::total_cmp);
     let title = &column.title;
-    let heading = title.split(' ').map(|word| Font::SansBold.width(word, 1.0)).fold(0.0, f32::max);
+    let heading = match heading(column) {
+        Font::MonoBold => Font::MonoBold.width(title, 1.0),
+        font => title.split(' ').map(|word| font.width(word, 1.0)).fold(0.0, f32::max),
+    };
     let most = widths.last().copied().unwrap_or(0.0).max(heading);
     let usual = widths.get(widths.len() * 9 / 10).copied().unwrap_or(0.0).max(heading);
     let narrowest = (NARROWEST / BODY).min(most);
     match column.kind {
         ColumnKind::Text => {
             let word = cells.iter().map(|cell| longest_word(cell, font, 1.0)).fold(heading, f32::max);
-            let least = word.min(10.0).max(narrowest);
+            let least = word.min(LONG).max(narrowest);
             Wish { most, usual: usual.max(least), least }
         }
         ColumnKind::Number => Wish { most, usual: usual.max(narrowest), least: most.min(usual * 1.3) },

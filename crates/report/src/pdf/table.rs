@@ -3,7 +3,7 @@
 use render::pdf::{Area, Color, Font, Letters};
 
 use super::book::{Book, RULE, SHADE};
-use super::columns::{Column, Plan};
+use super::columns::{Column, Plan, heading};
 use super::text::{Line, lines, plain_lines};
 use crate::model::{Row, RowKind, Table, Text};
 
@@ -16,8 +16,8 @@ type Cells<'t> = Vec<Vec<Line<'t>>>;
 /// What is the same on every page of a table.
 struct Frame {
     plan: Plan,
-    /// The titles of the columns, each in lines; empty: the table has none.
-    titles: Vec<Vec<String>>,
+    /// The titles of the columns, each in lines of a font; empty: the table has none.
+    titles: Vec<(Font, Vec<String>)>,
 }
 
 impl Frame {
@@ -26,7 +26,7 @@ impl Frame {
     }
 
     fn head_height(&self) -> f32 {
-        match self.titles.iter().map(Vec::len).max() {
+        match self.titles.iter().map(|(_, lines)| lines.len()).max() {
             Some(lines) => self.plan.leading() * lines as f32 + 4.0,
             None => 0.0,
         }
@@ -47,7 +47,7 @@ impl<'a> Book<'a> {
         let plan = Plan::of(table, |strips| self.room_of(strips));
         let titled = table.columns.iter().any(|column| !column.title.is_empty());
         let cut = |(column, at): (&crate::model::Column, &Column)| {
-            plain_lines(&column.title, Font::SansBold, plan.size, at.width)
+            (heading(column), plain_lines(&column.title, heading(column), plan.size, at.width))
         };
         let titles = if titled { table.columns.iter().zip(&plan.columns).map(cut).collect() } else { Vec::new() };
         let frame = Frame { plan, titles };
@@ -134,7 +134,8 @@ impl<'a> Book<'a> {
         let (left, right, letters) = (self.left(), self.right(), frame.head());
         if !frame.titles.is_empty() {
             let bottom = self.y + frame.head_height();
-            for (lines, column) in frame.titles.iter().zip(&frame.plan.columns) {
+            for ((font, lines), column) in frame.titles.iter().zip(&frame.plan.columns) {
+                let letters = Letters { font: *font, ..letters };
                 for (line, index) in lines.iter().rev().zip(0_u16..) {
                     let x = column.start(left, letters.font.width(line, letters.size));
                     // Titles stand on the line below them.

@@ -5,6 +5,9 @@ use render::pdf::{Font, printable};
 use crate::anchor::Anchor;
 use crate::model::Text;
 
+/// Sums of widths differ in the last digits, by points.
+const TOLERANCE: f32 = 0.05;
+
 /// Part of a line that leads to one place, or to none.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Piece<'a> {
@@ -106,7 +109,7 @@ impl<'a> Cutter<'a> {
     fn add(&mut self, text: &str, link: Option<&'a Anchor>, out: &mut Vec<Line<'a>>) {
         for c in text.chars() {
             let advance = self.font.advance(c, self.size);
-            if self.width + advance > self.room && c != ' ' && !self.open.is_empty() {
+            if self.width + advance > self.room + TOLERANCE && c != ' ' && !self.open.is_empty() {
                 self.cut(out);
             }
             self.open.push((c, link));
