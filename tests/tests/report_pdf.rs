@@ -155,8 +155,12 @@ fn an_address_in_a_rung_leads_to_its_cross_reference() {
             Some((page.texts.iter().find(inside)?.text.trim_end_matches('<').to_owned(), link))
         })
     });
-    let links: Vec<_> = links.filter(|(_, link)| (after.0..=after.1).contains(&link.page)).collect();
-    assert!(!links.is_empty());
+    // Symbols lead to the same places; an address is what can be compared.
+    let links = links.filter(|(text, link)| {
+        (after.0..=after.1).contains(&link.page) && ladder::Address::parse(text).is_ok()
+    });
+    let links: Vec<_> = links.collect();
+    assert!(links.len() > 10);
     for (address, link) in links {
         let target = &book.pages[link.page];
         let there = |t: &&Text| t.text == address && t.line < link.top && t.line > link.top - 30.0;

@@ -126,3 +126,27 @@ fn a_do_more_project_has_a_report_too() {
     assert!(page.matches("<svg class=\"rung\"").count() > 2);
     assert!(page.matches("href=\"#x-").count() > 5, "addresses in rungs lead to the cross reference");
 }
+
+#[test]
+fn a_book_on_the_paper_that_was_asked_for() {
+    let folder = folder("book");
+    let out = folder.join("r.pdf");
+    assert_eq!(code(&["report", "motor/motor.RSS", "--out", shown(&out)]), Some(0));
+    let book = std::fs::read(&out).expect("a file");
+    assert!(book.starts_with(b"%PDF-1.7") && book.ends_with(b"%%EOF"));
+    let has = |book: &[u8], part: &str| book.windows(part.len()).any(|window| window == part.as_bytes());
+    assert!(has(&book, "595.28 841.89"), "A4");
+    let letter = folder.join("letter.pdf");
+    let arguments = ["report", "motor/motor.RSS", "--out", shown(&letter), "--paper", "letter", "--landscape"];
+    assert_eq!(code(&arguments), Some(0));
+    assert!(has(&std::fs::read(&letter).expect("a file"), "792 612"));
+    // Nothing is ignored silently.
+    let page = folder.join("r.html");
+    assert_eq!(code(&["report", "motor/motor.RSS", "--out", shown(&page), "--landscape"]), Some(2));
+    assert_eq!(code(&["report", "motor/motor.RSS", "--out", shown(&page), "--to", "pdf"]), Some(2));
+    assert!(!page.exists());
+    let books = folder.join("books");
+    assert_eq!(code(&["report", "motor/motor.RSS", "batch/batch.RSS", "--out", shown(&books), "--to", "pdf"]), Some(0));
+    assert!(read(&books.join("index.html")).contains("href=\"./motor.pdf\""));
+    assert!(books.join("batch.pdf").exists());
+}
