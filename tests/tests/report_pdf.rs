@@ -113,7 +113,7 @@ fn every_address_stands_in_the_text_of_the_examples() {
         let document = report::project(&Source::of(&project), &Options::default());
         for paper in [Paper::A4, Paper::Letter] {
             for landscape in [false, true] {
-                let pdf = report::pdf::write(&document, Format { paper, landscape });
+                let pdf = report::pdf::write(&document, Format { paper, landscape, ..Format::default() });
                 check(&project, &document, &pdf);
                 validate(&document.title, &pdf.bytes);
                 count += 1;
@@ -156,9 +156,8 @@ fn an_address_in_a_rung_leads_to_its_cross_reference() {
         })
     });
     // Symbols lead to the same places; an address is what can be compared.
-    let links = links.filter(|(text, link)| {
-        (after.0..=after.1).contains(&link.page) && ladder::Address::parse(text).is_ok()
-    });
+    let links =
+        links.filter(|(text, link)| (after.0..=after.1).contains(&link.page) && ladder::Address::parse(text).is_ok());
     let links: Vec<_> = links.collect();
     assert!(links.len() > 10);
     for (address, link) in links {

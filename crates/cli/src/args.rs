@@ -431,19 +431,25 @@ pub struct ExportArguments {
     /// Overwrite files that exist
     #[arg(long)]
     pub force: bool,
-    /// With --to svg and html: only these program files
+    /// With --to pdf: paper; default: A4
+    #[arg(long, value_enum, value_name = "SIZE")]
+    pub paper: Option<Paper>,
+    /// With --to pdf: the longer side of the paper lies
+    #[arg(long)]
+    pub landscape: bool,
+    /// With --to svg, html and pdf: only these program files
     #[arg(long = "file", value_name = "N")]
     pub program_files: Vec<u16>,
-    /// With --to svg and html: only these code blocks of a Do-more project
+    /// With --to svg, html and pdf: only these code blocks of a Do-more project
     #[arg(long = "block", value_name = "NAME")]
     pub blocks: Vec<String>,
-    /// With --to svg and html: only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
+    /// With --to svg, html and pdf: only this rung or range of rungs: 4, 4..7, 4.., ..7 (both ends included)
     #[arg(long, value_name = "A[..B]")]
     pub rung: Option<RungRange>,
     /// With --to svg and html: columns to draw in, from 60 to 400; a column is 8 pixels wide
     #[arg(long, default_value_t = 120)]
     pub width: usize,
-    /// With --to svg and html: highlight contacts that conduct and coils that are on, by the data tables of the image
+    /// With --to svg, html and pdf: highlight contacts that conduct and coils that are on, by the data tables of the image
     #[arg(long)]
     pub state: bool,
     /// Strict reading: the first deviation from the format is an error
@@ -468,6 +474,8 @@ pub enum Form {
     Svg,
     /// The ladder drawn, as one page that needs no network
     Html,
+    /// The ladder drawn, as pages to print; `rungs report` has the whole project
+    Pdf,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

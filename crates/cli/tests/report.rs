@@ -150,3 +150,18 @@ fn a_book_on_the_paper_that_was_asked_for() {
     assert!(read(&books.join("index.html")).contains("href=\"./motor.pdf\""));
     assert!(books.join("batch.pdf").exists());
 }
+
+#[test]
+fn the_ladder_alone_is_exported_as_a_book() {
+    let folder = folder("export");
+    let whole = folder.join("ladder.pdf");
+    assert_eq!(code(&["export", "motor/motor.RSS", "--to", "pdf", "--out", shown(&whole)]), Some(0));
+    let one = folder.join("one.pdf");
+    let arguments = ["export", "motor/motor.RSS", "--to", "pdf", "--out", shown(&one), "--file", "2", "--rung", "0"];
+    assert_eq!(code(&arguments), Some(0));
+    let size = |path: &Path| std::fs::metadata(path).map(|data| data.len()).expect("a file");
+    assert!(size(&one) < size(&whole));
+    let domore = folder.join("domore.pdf");
+    assert_eq!(code(&["export", "filling_domore/filling.txt", "--to", "pdf", "--out", shown(&domore)]), Some(0));
+    assert!(std::fs::read(&domore).expect("a file").starts_with(b"%PDF-1.7"));
+}

@@ -61,7 +61,7 @@ pub fn domore_project<'a>(source: &DomoreSource<'a>, options: &Options) -> Docum
     let found: Vec<ladder::Diagnostic> = source.diagnostics.iter().map(Diagnostic::to_ladder).collect();
     let mut document = Document {
         title: source.source.file.clone(),
-        processor: format!("Do-more {}", source.project.controller()).trim_end().to_owned(),
+        processor: crate::words::controller(source.project),
         tool: concat!("rungs ", env!("CARGO_PKG_VERSION")).to_owned(),
         date: options.date.clone().unwrap_or_default(),
         notes: notes(&found),

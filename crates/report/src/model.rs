@@ -336,6 +336,14 @@ impl Table {
 }
 
 impl<'a> Document<'a> {
+    /// A document of sections that are there already.
+    pub fn of_sections(title: String, processor: String, sections: Vec<Section<'a>>) -> Document<'a> {
+        let tool = concat!("rungs ", env!("CARGO_PKG_VERSION")).to_owned();
+        let mut document = Document { title, processor, tool, sections, ..Document::default() };
+        document.settle();
+        document
+    }
+
     /// Is there such a place?
     pub fn has(&self, anchor: &Anchor) -> bool {
         self.places.contains(anchor)

@@ -31,6 +31,8 @@ pub struct Format {
     pub paper: Paper,
     /// The longer side lies.
     pub landscape: bool,
+    /// Contacts that conduct and coils that are on are highlighted, by the data tables of the project.
+    pub state: bool,
 }
 
 /// What became of a document.

@@ -2,6 +2,11 @@
 
 use ladder::{IoRange, Memory, Processor, ProgramFile, ProgramFileKind, Slot, Source};
 
+/// The controller of a Do-more project.
+pub fn controller(project: &domore::Project) -> String {
+    format!("Do-more {}", project.controller()).trim_end().to_owned()
+}
+
 /// Processor type with catalogue number and name, and how sure that is.
 pub fn processor(processor: &Processor) -> String {
     let sure = format!("({}: {})", processor.family_confidence.as_str(), processor.evidence);

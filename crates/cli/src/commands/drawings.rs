@@ -1,6 +1,7 @@
-//! Drawings for `rungs export`: every rung as SVG, or the ladder as one page.
+//! Drawings for `rungs export`: every rung as SVG, or the ladder as one page or as a book.
 
 use std::io::{self, Write};
+use std::rc::Rc;
 
 use domore::CodeBlock;
 use ladder::{ProgramFile, ProgramFileKind};
@@ -8,6 +9,8 @@ use render::Style;
 use render::html::Page;
 use render::scene::{Item, Scene};
 use render::svg;
+use report::pdf::Format;
+use report::{Anchor, Block, Document, Kind, Rung, Section};
 
 use super::{Opened, OpenedDomore};
 use crate::args::ExportArguments;
@@ -17,7 +20,7 @@ pub enum Rungs<'a> {
     /// Program file and number from 0.
     Slc(&'a Opened, Style, Vec<(&'a ProgramFile, usize)>),
     /// Code block, its place in the project, and number from 0.
-    Domore(domore::documentation::Documentation<'a>, Style, Vec<(usize, &'a CodeBlock, usize)>),
+    Domore(Rc<domore::documentation::Documentation<'a>>, Style, Vec<(usize, &'a CodeBlock, usize)>),
 }
 
 /// One of them, drawn.
@@ -62,7 +65,7 @@ impl<'a> Rungs<'a> {
             (0..block.rungs.len()).filter(rung).map(move |index| (place, block, index))
         };
         let chosen = blocks.flat_map(of_block).collect();
-        Rungs::Domore(domore::documentation::Documentation::new(project), style(arguments), chosen)
+        Rungs::Domore(Rc::new(domore::documentation::Documentation::new(project)), style(arguments), chosen)
     }
 
     /// How many there are.
@@ -70,6 +73,36 @@ impl<'a> Rungs<'a> {
         match self {
             Rungs::Slc(_, _, chosen) => chosen.len(),
             Rungs::Domore(_, _, chosen) => chosen.len(),
+        }
+    }
+
+    /// The chosen rungs as sections of a document.
+    fn sections(&self) -> Vec<Section<'a>> {
+        let section = |anchor, title: String, blocks| {
+            let short = title.split(" --- ").next().unwrap_or_default().to_owned();
+            Section { kind: Kind::Ladder, anchor, title, short, blocks }
+        };
+        match self {
+            Rungs::Slc(opened, _, chosen) => {
+                let of_file = |rungs: &[(&'a ProgramFile, usize)]| {
+                    let (file, _) = rungs.first()?;
+                    let rung = |(file, index): &(&'a ProgramFile, usize)| {
+                        Block::Rung(Rung::of_file(opened.image(), file, *index, opened.documentation()))
+                    };
+                    Some(section(Anchor::file(file.number), render::title(file), rungs.iter().map(rung).collect()))
+                };
+                chosen.chunk_by(|(a, _), (b, _)| std::ptr::eq(*a, *b)).filter_map(of_file).collect()
+            }
+            Rungs::Domore(documentation, _, chosen) => {
+                let of_block = |rungs: &[(usize, &'a CodeBlock, usize)]| {
+                    let (place, block, _) = rungs.first()?;
+                    let rung = |(place, block, index): &(usize, &'a CodeBlock, usize)| {
+                        Block::Rung(Rung::of_code_block(*place, block, *index, Rc::clone(documentation)))
+                    };
+                    Some(section(Anchor::file(place), render::domore::title(block), rungs.iter().map(rung).collect()))
+                };
+                chosen.chunk_by(|(a, ..), (b, ..)| a == b).filter_map(of_block).collect()
+            }
         }
     }
 
@@ -116,4 +149,11 @@ pub fn page(title: &str, rungs: &Rungs<'_>, out: &mut dyn Write) -> io::Result<(
         page.rung(&drawn.scene, &drawn.name)?;
     }
     page.finish()
+}
+
+/// The rungs as a book, a PDF file.
+pub fn book(title: String, processor: String, rungs: &Rungs<'_>, arguments: &ExportArguments) -> Vec<u8> {
+    let document = Document::of_sections(title, processor, rungs.sections());
+    let paper = arguments.paper.unwrap_or_default().into();
+    report::pdf::write(&document, Format { paper, landscape: arguments.landscape, state: arguments.state }).bytes
 }

@@ -145,6 +145,11 @@ fn exported(opened: &Opened, arguments: &ExportArguments, line: bool) -> Result<
         (Form::Html, _) => {
             drawings::page(&printable(&opened.title()), &Rungs::of_project(opened, arguments), &mut bytes)?;
         }
+        (Form::Pdf, _) => {
+            let processor = report::words::processor(&opened.image().processor);
+            let rungs = Rungs::of_project(opened, arguments);
+            bytes = drawings::book(opened.title(), processor, &rungs, arguments);
+        }
         // Files of their own, see `put_drawings`.
         (Form::Svg, _) => {}
         (Form::Domore, _) => {
@@ -181,6 +186,7 @@ fn ending(arguments: &ExportArguments) -> &'static str {
         (Form::Domore, _) => "txt",
         (Form::Svg, _) => "svg",
         (Form::Html, _) => "html",
+        (Form::Pdf, _) => "pdf",
         (Form::Csv, Table::Symbols) => "symbols.csv",
         (Form::Csv, Table::Timers) => "timers.csv",
         (Form::Csv, Table::Xref) => "xref.csv",

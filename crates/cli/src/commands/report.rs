@@ -151,10 +151,8 @@ impl Pages<'_> {
         match self.medium {
             Medium::Html => report::html::page(document, file),
             Medium::Pdf => {
-                let format = Format {
-                    paper: self.arguments.paper.unwrap_or_default().into(),
-                    landscape: self.arguments.landscape,
-                };
+                let paper = self.arguments.paper.unwrap_or_default().into();
+                let format = Format { paper, landscape: self.arguments.landscape, ..Format::default() };
                 file.write_all(&report::pdf::write(document, format).bytes)
             }
         }

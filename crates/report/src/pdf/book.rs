@@ -97,6 +97,8 @@ pub(super) struct Entry {
 pub(super) struct Book<'a> {
     pub document: &'a Document<'a>,
     pub sheet: Sheet,
+    /// Rungs show what conducts.
+    pub state: bool,
     pub pages: Vec<Page>,
     /// Where the next thing stands on the last page.
     pub y: f32,
@@ -129,6 +131,7 @@ impl<'a> Book<'a> {
         Book {
             document,
             sheet: Sheet::of(format),
+            state: format.state,
             pages: Vec::new(),
             y: f32::INFINITY,
             places: HashMap::new(),

@@ -24,8 +24,7 @@ impl<'a> Book<'a> {
         let width = ((room / CELL) as usize).clamp(render::MIN_WIDTH, render::MAX_WIDTH);
         let cell = room / width as f32;
         let row = cell * ROW;
-        // Addresses stand whole in one place, so that they can be searched for.
-        let style = Style { width, split_bits: false, ..Style::default() };
+        let style = Style { state: self.state, ..Style::graphic(width) };
         let scene = drawn.scene(&style);
         // The last row only keeps rungs apart.
         let needed = scene.height.saturating_sub(1) as f32 * row;

@@ -29,6 +29,10 @@ pub fn exported(opened: &OpenedDomore, arguments: &ExportArguments) -> Result<Ve
         (Form::Html, _) => {
             drawings::page(&opened.name(), &Rungs::of_domore(opened, arguments), &mut bytes)?;
         }
+        (Form::Pdf, _) => {
+            let processor = report::words::controller(project);
+            bytes = drawings::book(opened.name(), processor, &Rungs::of_domore(opened, arguments), arguments);
+        }
         // Files of their own.
         (Form::Svg, _) => {}
         (Form::Slc, _) => {
@@ -48,5 +52,6 @@ pub fn ending(arguments: &ExportArguments) -> &'static str {
         (Form::Slc | Form::Domore, _) => "txt",
         (Form::Svg, _) => "svg",
         (Form::Html, _) => "html",
+        (Form::Pdf, _) => "pdf",
     }
 }
