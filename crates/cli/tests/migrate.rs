@@ -67,7 +67,10 @@ fn the_report_tells_every_rung() {
     assert_eq!(report["rungs"].as_array().map(Vec::len), report["counts"]["rungs"].as_u64().map(|n| n as usize));
     assert!(report["unchecked"].as_str().is_some_and(|text| text.contains("No copy of Do-more Designer")));
     let page = text(&std::fs::read(out.join("report.html")).expect("a page"));
-    assert!(!page.contains("<script") && !page.contains("http:") && !page.contains("https:"), "the page needs nothing else");
+    assert!(
+        !page.contains("<script") && !page.contains("http:") && !page.contains("https:"),
+        "the page needs nothing else"
+    );
     assert_eq!(page.matches("<section").count() as u64, report["counts"]["rungs"].as_u64().expect("a count"));
 }
 

@@ -7,19 +7,14 @@ use domore::program::{CodeKind, CommentKind, LineEnd, Radix};
 use domore::text::{read, write};
 use domore::{Instruction, Problem, Rung};
 
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod place;
+
 const SMALL: &str = include_str!("data/small.txt");
 
 fn corpus() -> Option<PathBuf> {
-    let root = match std::env::var_os("RUNGS_CORPUS") {
-        Some(path) => PathBuf::from(path),
-        None => PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"),
-    };
-    let folder = root.join("domore");
-    if !folder.is_dir() {
-        println!("skipped: corpus not present");
-        return None;
-    }
-    Some(folder)
+    place::root().map(|root| root.join("domore")).filter(|folder| folder.is_dir())
 }
 
 #[test]

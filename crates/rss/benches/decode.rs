@@ -7,8 +7,12 @@ use rss::program::{Instruction, Item, LadFile, Leg, ProgramFiles, Rung, mark};
 use rss::verify::read_stream;
 use rss::{ImageKind, Mode, Project, StreamKind, Text, serialize};
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
+
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod place;
 
 /// Inflates every stream, and reads its record if asked to.
 fn run(projects: &[Project], records: bool) -> Duration {
@@ -37,19 +41,7 @@ fn ratio(a: Duration, b: Duration) -> f64 {
 }
 
 fn corpus() -> Vec<PathBuf> {
-    let root = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    let (mut files, mut open) = (Vec::new(), vec![root]);
-    while let Some(folder) = open.pop() {
-        for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("rss")) {
-                files.push(path);
-            }
-        }
-    }
-    files
+    place::root().map_or_else(Vec::new, |root| place::files(&root, ".rss").expect("the corpus can be listed"))
 }
 
 /// A program of `rungs` rungs with three instructions each.

@@ -44,6 +44,7 @@ mod outside;
 mod peer;
 mod program;
 pub mod scenario;
+pub mod shared;
 mod snapshot;
 mod state;
 pub mod status;

@@ -4,6 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::shared::{nanoseconds, steps};
+
 use crate::core::{Core, NoWatch};
 use crate::op::Compiled;
 use crate::peer::{NoPeer, Peer};
@@ -154,12 +156,12 @@ impl Machine {
     /// Scans of length `step` until `time` has passed, the last one shorter if it does not fit. Ends
     /// early when the controller stops. Returns the number of scans.
     pub fn run_for(&mut self, time: Duration, step: Duration) -> u64 {
-        let mut left = time;
         let mut scans = 0;
-        while !left.is_zero() && !step.is_zero() && self.is_executing() {
-            let dt = left.min(step);
+        for dt in steps(time, step) {
+            if !self.is_executing() {
+                break;
+            }
             self.scan(dt);
-            left -= dt;
             scans += 1;
         }
         scans
@@ -234,9 +236,4 @@ impl Machine {
         self.state = crate::snapshot::restore(&self.program, bytes)?;
         Ok(())
     }
-}
-
-/// Time in nanoseconds, at most what the clock of a machine holds.
-fn nanoseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX / 4)
 }

@@ -2,7 +2,8 @@
 //!
 //! `RUNGSIM2`, the identity of the program, then every field in a fixed order, numbers little-endian.
 
-use std::fmt;
+use crate::shared::Reader;
+pub use crate::shared::RestoreError;
 
 use instr::exec::process::Loop;
 
@@ -14,26 +15,6 @@ use crate::op::Compiled;
 use crate::state::{MessageSlot, PidSlot, State, TimedInterrupt, TimerSlot};
 
 const MAGIC: &[u8; 8] = b"RUNGSIM2";
-
-/// Why bytes are no state of this machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RestoreError {
-    /// They do not begin as a saved state, or end early or late.
-    NotAState,
-    /// The state was saved from another program or under other options.
-    OtherProgram,
-}
-
-impl fmt::Display for RestoreError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            RestoreError::NotAState => "not a saved machine state, or a damaged one",
-            RestoreError::OtherProgram => "the state was saved from another program or with other options",
-        })
-    }
-}
-
-impl std::error::Error for RestoreError {}
 
 const MODES: [Mode; 5] = [Mode::Program, Mode::Run, Mode::Test, Mode::Suspend, Mode::Fault];
 
@@ -107,13 +88,7 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
 }
 
 pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, RestoreError> {
-    let mut reader = Reader { bytes };
-    if reader.take::<8>()? != *MAGIC {
-        return Err(RestoreError::NotAState);
-    }
-    if reader.long()? != program.identity {
-        return Err(RestoreError::OtherProgram);
-    }
+    let mut reader = Reader::new(bytes, *MAGIC, program.identity)?;
     let mut state = State::new(program);
     for word in state.mem.iter_mut().chain(&mut state.inputs).chain(&mut state.outputs) {
         *word = reader.word()?;
@@ -179,33 +154,6 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
     state.mode = *MODES.get(usize::from(mode)).ok_or(RestoreError::NotAState)?;
     let (present, code, file, rung) = (reader.word()?, reader.word()?, reader.word()?, reader.word()?);
     state.fault = (present != 0).then_some(MajorFault { code, file, rung });
-    if reader.bytes.is_empty() { Ok(state) } else { Err(RestoreError::NotAState) }
-}
-
-struct Reader<'a> {
-    bytes: &'a [u8],
-}
-
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], RestoreError> {
-        let (taken, rest) = self.bytes.split_first_chunk::<N>().ok_or(RestoreError::NotAState)?;
-        self.bytes = rest;
-        Ok(*taken)
-    }
-
-    fn word(&mut self) -> Result<u16, RestoreError> {
-        self.take().map(u16::from_le_bytes)
-    }
-
-    fn long(&mut self) -> Result<u64, RestoreError> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    fn flag(&mut self) -> Result<bool, RestoreError> {
-        match self.take::<1>()? {
-            [0] => Ok(false),
-            [1] => Ok(true),
-            _ => Err(RestoreError::NotAState),
-        }
-    }
+    reader.end()?;
+    Ok(state)
 }

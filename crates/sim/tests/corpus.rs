@@ -1,33 +1,13 @@
 //! Every project of the corpus loads and runs.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use sim::{Machine, Options, Program, Unsupported};
 
-/// The corpus folder, or `None` with a line that says so.
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped: corpus not present");
-    None
-}
-
-fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            projects(&path, found);
-        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod place;
 
 /// Reasons without the addresses and numbers in them, so that they can be counted.
 fn kind(text: &str) -> String {
@@ -39,7 +19,7 @@ fn kind(text: &str) -> String {
 
 #[test]
 fn every_project_runs() {
-    let Some(folder) = corpus() else { return };
+    let Some(folder) = place::root() else { return };
     let scans: u32 = std::env::var("RUNGS_SCANS").ok().and_then(|text| text.parse().ok()).unwrap_or(300);
     let mut approximated: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut refused: BTreeMap<String, (usize, usize)> = BTreeMap::new();
@@ -47,9 +27,7 @@ fn every_project_runs() {
     let (mut programs, mut clean, mut instructions) = (0, 0, 0u64);
     let mut faults: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut busy = Duration::ZERO;
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
-    for path in files {
+    for path in place::files(&folder, ".rss").expect("the corpus can be listed") {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let bytes = std::fs::read(&path).expect("readable file");
         let Ok(file) = rss::Project::read(&bytes, rss::Mode::Permissive) else {

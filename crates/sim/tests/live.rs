@@ -9,12 +9,16 @@
 //! many were changed after they were read from their controllers; they count in sum only.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use instr::{Kind, Role};
 use ladder::{Address, FileType, Image, Instruction, Operand, Value};
 use sim::{Machine, Options, Program, Recorder, Unsupported};
+
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod place;
 
 /// Projects known to have been saved while running, by the beginning or a part of the file name, and
 /// the least share of recomputed bits that agrees.
@@ -73,18 +77,6 @@ const EXPLAINED: &[(&str, &str, &str)] = &[
 
 /// Mode codes of S:1 in which a program is executed: remote run, run.
 const RUNNING: [u16; 2] = [6, 30];
-
-fn projects(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            projects(&path, found);
-        } else if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("rss")) {
-            found.push(path);
-        }
-    }
-}
 
 /// Bits by word: under its text the address of the word, and which of its bits.
 type Bits = BTreeMap<String, (Address, u32)>;
@@ -324,14 +316,8 @@ impl Outcome {
 
 /// Images of the corpus whose S:1 says that the program is executed: file name, image.
 fn running() -> Option<Vec<(String, &'static str, Image)>> {
-    let folder = std::env::var_os("RUNGS_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus"), PathBuf::from);
-    if !folder.is_dir() {
-        println!("skipped: corpus not present");
-        return None;
-    }
-    let mut files = Vec::new();
-    projects(&folder, &mut files);
+    let folder = place::root()?;
+    let files = place::files(&folder, ".rss").expect("the corpus can be listed");
     let mut found = Vec::new();
     for path in files {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -6,6 +6,10 @@ use analysis::proof::{Mapping, RungFate};
 use convert::migrate::{Migration, Options, Verdict, migrate};
 use ladder::Image;
 
+#[path = "../../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod place;
+
 /// A program and what a migration made of it.
 pub(crate) struct Migrated {
     pub(crate) name: String,
@@ -52,8 +56,7 @@ pub(crate) fn root() -> PathBuf {
 /// The corpus, if it is here.
 #[allow(dead_code)]
 pub(crate) fn corpus() -> Option<PathBuf> {
-    let corpus = std::env::var_os("RUNGS_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
-    corpus.is_dir().then_some(corpus)
+    place::root()
 }
 
 /// Our own examples, and if asked for the programs of the corpus that must be proven, as far as they are here.

@@ -4,6 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+use sim::shared::{nanoseconds, steps};
+
 use super::op::{Compiled, Runs};
 use super::run::{Core, Ended};
 use super::snapshot::{self, RestoreError};
@@ -193,11 +195,12 @@ impl Machine {
     /// Scans of length `step` until `time` has passed, the last one shorter if it does not fit. Ends early
     /// when the machine stops. Returns the number of scans.
     pub fn run_for(&mut self, time: Duration, step: Duration) -> u64 {
-        let (mut left, mut scans) = (time, 0);
-        while !left.is_zero() && !step.is_zero() && self.state.mode == Mode::Run {
-            let dt = left.min(step);
+        let mut scans = 0;
+        for dt in steps(time, step) {
+            if self.state.mode != Mode::Run {
+                break;
+            }
             self.scan(dt);
-            left -= dt;
             scans += 1;
         }
         scans
@@ -431,9 +434,4 @@ impl Core<'_> {
         }
         Ended::Done
     }
-}
-
-/// Time in nanoseconds, at most what the clock of a machine holds.
-fn nanoseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX / 4)
 }

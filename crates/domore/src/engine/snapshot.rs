@@ -2,7 +2,8 @@
 //!
 //! `RUNGSDM2`, the identity of the program, then every field in a fixed order, numbers little-endian.
 
-use std::fmt;
+use sim::shared::Reader;
+pub use sim::shared::RestoreError;
 
 use super::op::Compiled;
 use super::state::{BlockState, Phase, State, TimerClock};
@@ -10,26 +11,6 @@ use super::{Fault, Mode};
 use crate::memory::Num;
 
 const MAGIC: &[u8; 8] = b"RUNGSDM2";
-
-/// Why bytes are no state of this machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RestoreError {
-    /// They do not begin as a saved state, or end early or late.
-    NotAState,
-    /// The state was saved from another program or under other options.
-    OtherProgram,
-}
-
-impl fmt::Display for RestoreError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            RestoreError::NotAState => "not a saved machine state, or a damaged one",
-            RestoreError::OtherProgram => "the state was saved from another program or with other options",
-        })
-    }
-}
-
-impl std::error::Error for RestoreError {}
 
 pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
     let mut out = Vec::with_capacity(256 + state.data.bytes().len());
@@ -80,13 +61,7 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
 }
 
 pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, RestoreError> {
-    let mut reader = Reader { bytes };
-    if reader.take::<8>()? != *MAGIC {
-        return Err(RestoreError::NotAState);
-    }
-    if reader.long()? != program.identity {
-        return Err(RestoreError::OtherProgram);
-    }
+    let mut reader = Reader::new(bytes, *MAGIC, program.identity)?;
     let mut state = State::new(program);
     for byte in state.data.bytes_mut().iter_mut().chain(state.terminals.bytes_mut()) {
         *byte = reader.byte()?;
@@ -140,33 +115,6 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
     for ran in &mut state.stages {
         *ran = reader.flag()?;
     }
-    if reader.bytes.is_empty() { Ok(state) } else { Err(RestoreError::NotAState) }
-}
-
-struct Reader<'a> {
-    bytes: &'a [u8],
-}
-
-impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], RestoreError> {
-        let (taken, rest) = self.bytes.split_first_chunk::<N>().ok_or(RestoreError::NotAState)?;
-        self.bytes = rest;
-        Ok(*taken)
-    }
-
-    fn byte(&mut self) -> Result<u8, RestoreError> {
-        self.take::<1>().map(|[byte]| byte)
-    }
-
-    fn long(&mut self) -> Result<u64, RestoreError> {
-        self.take().map(u64::from_le_bytes)
-    }
-
-    fn flag(&mut self) -> Result<bool, RestoreError> {
-        match self.byte()? {
-            0 => Ok(false),
-            1 => Ok(true),
-            _ => Err(RestoreError::NotAState),
-        }
-    }
+    reader.end()?;
+    Ok(state)
 }
