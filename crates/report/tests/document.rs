@@ -72,6 +72,16 @@ fn every_link_leads_to_one_place() {
 }
 
 #[test]
+fn a_word_leads_to_the_first_of_its_bits() {
+    let project = example("traffic_light/traffic_light.RSS");
+    let document = report::project(&Source::of(&project), &Options::default());
+    let mut runs = texts(&document).into_iter().flat_map(|text| &text.runs);
+    // The program names B3:0/0 only.
+    let expected = report::Anchor::reference("B3:0/0");
+    assert!(runs.any(|run| run.text == "B3:0" && run.link.as_ref() == Some(&expected)));
+}
+
+#[test]
 fn sections_left_out_take_their_links_with_them() {
     let project = example("motor/motor.RSS");
     let sections = Selection::parse("xref,timers", "").expect("names");

@@ -76,6 +76,7 @@ const ALIKE: usize = 4;
 /// One element: what stands in its row.
 struct Line {
     address: String,
+    reference: Anchor,
     cells: Vec<String>,
     forces: Vec<String>,
     documented: String,
@@ -124,7 +125,14 @@ fn table<'a>(context: &Context<'a, '_>, file: &DataFile) -> Block<'a> {
             }
             None => Vec::new(),
         };
-        Some(Line { address: address.to_string(), cells: cells(file.file_type, &value, radix), forces, documented })
+        let reference = context.reference(&address);
+        Some(Line {
+            address: address.to_string(),
+            reference,
+            cells: cells(file.file_type, &value, radix),
+            forces,
+            documented,
+        })
     });
     let mut alike: Vec<Line> = Vec::new();
     for line in lines {
@@ -157,7 +165,7 @@ fn put(table: &mut Table, alike: &mut Vec<Line>) {
         return;
     }
     for line in alike.drain(..) {
-        let mut cells = vec![Text::link(line.address.as_str(), Anchor::reference(&line.address))];
+        let mut cells = vec![Text::link(line.address.as_str(), line.reference)];
         cells.extend(line.cells.into_iter().chain(line.forces).map(Text::from));
         cells.push(line.documented.into());
         table.row_at(Anchor::element(&line.address), cells);

@@ -13,6 +13,8 @@ mod xref;
 
 pub(crate) use overview::{Pairs, diagnostics};
 
+use std::collections::HashMap;
+
 use analysis::{CallGraph, CrossReference, Location};
 use ladder::{Address, Diagnostic, Documentation, Image, Project, Severity};
 
@@ -47,6 +49,9 @@ struct Context<'a, 'x> {
     source: &'x Source<'a>,
     xref: CrossReference<'a>,
     calls: CallGraph,
+    /// The first address the program names in each element: most bits and members have no entry for their
+    /// element.
+    first_named: HashMap<Address, Address>,
 }
 
 impl<'a> Context<'a, '_> {
@@ -65,13 +70,24 @@ impl<'a> Context<'a, '_> {
     }
 }
 
+impl Context<'_, '_> {
+    /// The cross reference entry of an element, or the first of its bits and members.
+    fn reference(&self, element: &Address) -> Anchor {
+        let named = element.element_address().and_then(|element| self.first_named.get(&element));
+        Anchor::reference(&named.unwrap_or(element).to_string())
+    }
+}
+
 /// Builds the document of a project.
 pub fn project<'a>(source: &Source<'a>, options: &Options) -> Document<'a> {
-    let context = Context {
-        source,
-        xref: CrossReference::build(source.image, source.documentation),
-        calls: CallGraph::build(source.image, source.documentation),
-    };
+    let xref = CrossReference::build(source.image, source.documentation);
+    let mut first_named = HashMap::new();
+    for address in xref.named() {
+        if let Some(element) = address.element_address() {
+            first_named.entry(element).or_insert_with(|| address.clone());
+        }
+    }
+    let context = Context { source, xref, first_named, calls: CallGraph::build(source.image, source.documentation) };
     let which = if source.which.is_empty() { String::new() } else { format!(" ({})", source.which) };
     let mut document = Document {
         title: format!("{}{which}", source.project.source.file),
