@@ -120,7 +120,8 @@ pub enum Command {
     /// What changed between two programs, rung by rung; documentation, values and configuration apart
     #[command(
         after_help = "Example: rungs diff conveyor_old.RSS conveyor.RSS\n         rungs diff conveyor.RSS --online\n         \
-                            rungs diff archive/2023 archive/2024 --only logic --json\n\n\
+                            rungs diff archive/2023 archive/2024 --only logic --json\n         \
+                            rungs diff conveyor_old.RSS conveyor.RSS --html diff.html\n\n\
                             Exit code 0: equal in what --only names; 1: a difference; 2: bad use; 3: unreadable."
     )]
     Diff(DiffArguments),
