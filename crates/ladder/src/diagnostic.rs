@@ -5,9 +5,9 @@
 pub enum Severity {
     /// Worth knowing; nothing is missing.
     Note,
-    /// Something deviates from what is known of the format; data is kept.
+    /// Of a file: something deviates from what is known of the format, data is kept. Of a program: often wrong.
     Warning,
-    /// A part could not be read; what is shown is incomplete.
+    /// Of a file: a part could not be read, what is shown is incomplete. Of a program: it cannot run or do its work so.
     Error,
 }
 

@@ -18,33 +18,13 @@ mod outputs;
 mod suppress;
 mod timers;
 
+/// Note: worth knowing; warning: often wrong; error: the program cannot run so, or the instruction cannot do its work.
+pub use ladder::Severity;
 use ladder::{Documentation, Image};
 
 use crate::location::Location;
 pub(crate) use context::{Context, form as context_form};
 pub use suppress::{Rule, Rules};
-
-/// How much a finding matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Severity {
-    /// Worth knowing.
-    Note,
-    /// Often wrong.
-    Warning,
-    /// The program cannot run so, or the instruction cannot do its work.
-    Error,
-}
-
-impl Severity {
-    /// `note`, `warning`, `error`.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Severity::Note => "note",
-            Severity::Warning => "warning",
-            Severity::Error => "error",
-        }
-    }
-}
 
 /// One check.
 #[derive(Clone, Copy)]
