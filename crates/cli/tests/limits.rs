@@ -35,6 +35,7 @@ const READING: &[&[&str]] = &[
     &["xref", "--json"],
     &["xref", "--findings"],
     &["verify"],
+    &["history"],
     &["export", "--to", "json"],
     &["export", "--to", "slc"],
     &["export", "--to", "csv", "--table", "timers"],

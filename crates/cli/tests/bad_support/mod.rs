@@ -18,6 +18,7 @@ pub(crate) const COMMANDS: &[&[&str]] = &[
     &["xref"],
     &["xref", "--findings"],
     &["verify"],
+    &["history"],
     &["export", "--to", "json"],
     &["export", "--to", "slc"],
     &["export", "--to", "csv"],

@@ -49,7 +49,7 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
     }
     let writer = Writer { arguments, archive: &archive, machines: &found };
     let (mut commits, mut names) = (Vec::new(), repository::Names::default());
-    if !arguments.json {
+    if !arguments.json && !chosen.is_empty() {
         writer.overview(&chosen, &mut out)?;
     }
     for machine in chosen {
@@ -64,9 +64,11 @@ pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
         } else if arguments.to_git.is_none() {
             writer.text(machine, &refs, &steps, &mut out)?;
         }
-        let broken = |project: &Project| project.diagnostics.iter().any(|d| d.severity == Severity::Error);
-        if projects.iter().any(broken) {
-            outcome = outcome.max(Outcome::Unreadable);
+        out.flush()?;
+        for (project, entry) in projects.iter().zip(&machine.saves) {
+            if report_errors(project, &writer.path(entry.save)) {
+                outcome = outcome.max(Outcome::Unreadable);
+            }
         }
     }
     if let Some(target) = &arguments.to_git {
@@ -94,6 +96,18 @@ fn in_time(machines: Vec<Vec<Commit>>) -> Vec<Commit> {
     }
     keyed.sort_by_key(|(time, machine, number, _)| (*time, *machine, *number));
     keyed.into_iter().map(|(.., commit)| commit).collect()
+}
+
+/// Findings of the reader that are named of one save; `rungs info --json` has all.
+const NAMED: usize = 3;
+
+/// Says what of a save could not be read, true if something is missing.
+fn report_errors(project: &Project, name: &str) -> bool {
+    for found in project.diagnostics.iter().filter(|found| found.severity >= Severity::Warning).take(NAMED) {
+        let severity = found.severity.as_str();
+        eprintln!("{}", printable(&format!("{name}: {severity}: {}: {}", found.place, found.message)));
+    }
+    project.diagnostics.iter().any(|found| found.severity == Severity::Error)
 }
 
 /// What is known of each save. Programs are not kept: an archive can be larger than memory.
