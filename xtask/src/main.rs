@@ -3,6 +3,8 @@
 //! `cargo xtask` lists them. Each chore is an ordinary command line that could be typed by hand;
 //! this program only keeps the list in one place and the order right.
 
+mod contact_sheet;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -18,7 +20,7 @@ struct Chore {
 const CHORES: &[Chore] = &[
     Chore {
         name: "ci",
-        help: "everything below but `nightly`, `bench` and `bless`: what must pass before a change lands",
+        help: "everything below but `nightly`, `bench`, `contact-sheet` and `bless`: what must pass before a change lands",
         run: ci,
     },
     Chore { name: "fmt", help: "check formatting", run: |_| cargo(&["fmt", "--all", "--check"]) },
@@ -51,6 +53,11 @@ const CHORES: &[Chore] = &[
         run: |_| bless(),
     },
     Chore {
+        name: "contact-sheet",
+        help: "our drawings beside the printouts of the corpus, for eyes (target/contact-sheet)",
+        run: contact_sheet::run_chore,
+    },
+    Chore {
         name: "bench",
         help: "benchmarks: ratios against a baseline in the same run",
         run: |_| cargo(&["bench", "--workspace"]),
@@ -62,7 +69,7 @@ fn main() -> ExitCode {
     let Some(chore) = arguments.first().and_then(|name| CHORES.iter().find(|chore| chore.name == name)) else {
         eprintln!("usage: cargo xtask CHORE\n");
         for chore in CHORES {
-            eprintln!("  {:<10} {}", chore.name, chore.help);
+            eprintln!("  {:<13} {}", chore.name, chore.help);
         }
         return ExitCode::from(2);
     };

@@ -296,3 +296,29 @@ fn rungs_are_drawn_as_files_and_as_a_page() {
         assert!(page.contains("href=\"#a0\""), "{project} has no link");
     }
 }
+
+#[test]
+fn drawings_in_the_documents_are_what_is_drawn_now() {
+    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/drawings");
+    let shapes = docs.join("shapes.SLC").to_string_lossy().into_owned();
+    let sets: [(&str, &[&str]); 3] = [
+        ("shapes", &[&shapes, "--state", "--file", "2", "--rung", "0..10"]),
+        ("motor", &["motor/motor.RSS", "--file", "2", "--rung", "0..1"]),
+        ("filling", &["filling_domore/filling.txt", "--rung", "3", "--block", "Fill"]),
+    ];
+    for (name, arguments) in sets {
+        let to = folder(&format!("drawings_{name}"));
+        let out = to.to_string_lossy().into_owned();
+        let common = ["export", "--to", "svg", "--width", "100", "--force", "--out", &out];
+        let written = text(&[&common[..], arguments].concat());
+        for file in written.lines().map(std::path::Path::new) {
+            let kept = docs.join(name).join(file.file_name().expect("a name"));
+            let drawn = std::fs::read_to_string(file).expect("a drawing");
+            if std::env::var_os("RUNGS_BLESS").is_some() {
+                std::fs::write(&kept, &drawn).expect("written");
+            }
+            let same = std::fs::read_to_string(&kept).is_ok_and(|text| text == drawn);
+            assert!(same, "{} is not what is drawn now: RUNGS_BLESS=1 writes it", kept.display());
+        }
+    }
+}
