@@ -13,6 +13,8 @@ mod cells;
 mod facts;
 mod gates;
 mod scan;
+#[cfg(test)]
+mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 
