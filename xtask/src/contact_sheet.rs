@@ -87,6 +87,9 @@ const CASES: &[Case] = &[
 /// Dots per inch of the crops: a row of theirs is then as high as one of ours.
 const DPI: u32 = 109;
 
+/// Above this, in points, stands the title of a page; comments can name program files as well.
+const TITLE: f64 = 36.0;
+
 /// A rung number on a page of a report, in points.
 struct Place {
     page: usize,
@@ -153,8 +156,9 @@ fn place(report: &Path, case: &Case) -> Result<Place, String> {
     let number = format!("{:04}", case.rung);
     for (page, content) in text.split("<page ").skip(1).enumerate() {
         let words: Vec<(f64, f64, &str)> = content.lines().filter_map(word).collect();
-        let of_file =
-            words.windows(2).any(|pair| matches!(pair, [(_, _, "LAD"), (_, _, file)] if file.parse() == Ok(case.file)));
+        let of_file = words
+            .windows(2)
+            .any(|pair| matches!(pair, [(_, y, "LAD"), (_, _, file)] if *y < TITLE && file.parse() == Ok(case.file)));
         let numbers =
             || words.iter().filter(|(x, _, text)| *x < 30.0 && text.len() == 4 && text.parse::<u32>().is_ok());
         let Some((_, y, _)) = numbers().find(|(_, _, text)| of_file && *text == number) else { continue };
