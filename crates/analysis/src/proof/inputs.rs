@@ -6,6 +6,7 @@ use instr::Role;
 use ladder::{Address, FileType, Image, Operand};
 
 use super::pairs::Pairs;
+use super::report::Driven;
 use super::side::{Kind, Side, Slc};
 use crate::{Access, CrossReference, Level, Through};
 
@@ -49,6 +50,18 @@ const CLOCK: [(u16, u16, &str, u32, u32); 6] = [
     (41, 4, "Minute", 0, 59),
     (42, 5, "Second", 0, 59),
 ];
+
+impl<T> Inputs<T> {
+    /// What is changed, as the other side names it.
+    pub(crate) fn driven(&self) -> Vec<Driven> {
+        let range = |input: &Input<T>| {
+            let ends = input.values.iter().min().zip(input.values.iter().max());
+            ends.filter(|_| input.bounded).map(|(least, most)| (*least, *most))
+        };
+        let driven = |input: &Input<T>| Driven { address: input.other.clone(), kind: input.kind, range: range(input) };
+        self.all.iter().map(driven).collect()
+    }
+}
 
 impl<T: Clone> Inputs<T> {
     /// Finds all inputs of the original and where the other side has them.
@@ -117,6 +130,26 @@ impl<T: Clone> Inputs<T> {
                 inputs.add(a, b, (text, other), (at, Kind::Word), values, true, false);
             }
         }
+        // People preset what a program counts up itself, too.
+        for address in accumulated(image) {
+            let text = address.to_string();
+            let Ok((at, kind @ (Kind::Word | Kind::Long))) = a.place(&text) else { continue };
+            if !seen.insert((at, kind)) {
+                continue;
+            }
+            let limit = pointer_limit(xref, &address, &xref.of(&address));
+            let mut values = compared.get(&at).cloned().unwrap_or_default();
+            values.extend(edges(kind));
+            values.extend(if kind == Kind::Word { [0x7FFE, 0x8001] } else { [0x7FFF_FFFE, 0x8000_0001] });
+            if let Some(limit) = limit {
+                values.retain(|value| *value < limit);
+                values.extend([0, limit.saturating_sub(1)]);
+            }
+            values.sort_unstable();
+            values.dedup();
+            let other = pairs.other(at, kind);
+            inputs.add(a, b, (text, other), (at, kind), values, limit.is_some(), false);
+        }
         // Words of terminals that instructions take whole.
         for (at, own, other) in pairs.input_words() {
             let Ok(address) = Address::parse(&own) else { continue };
@@ -173,6 +206,21 @@ fn counted(image: &Image) -> Vec<Address> {
             && address.is_direct()
         {
             all.push(address.clone().with_word(2));
+        }
+    }
+    all
+}
+
+/// Words that an instruction computes from themselves.
+fn accumulated(image: &Image) -> Vec<Address> {
+    let mut all: Vec<Address> = Vec::new();
+    for (_, instruction) in crate::instructions(image) {
+        if let (Some("ADD" | "SUB" | "MUL"), [from @ .., to]) = (instruction.mnemonic.name(), &*instruction.operands)
+            && let Some(address) = to.address().filter(|address| address.is_direct())
+            && from.iter().any(|operand| operand.address() == Some(address))
+            && !all.contains(address)
+        {
+            all.push(address.clone());
         }
     }
     all

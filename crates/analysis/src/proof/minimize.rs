@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::campaign::{Both, Difference, apply, compare, enter};
 use super::inputs::Inputs;
 use super::pairs::Pairs;
+use super::play::{Both, Difference, apply, compare, enter};
 use super::side::Side;
 use super::tape::{Head, Set, Tape};
 

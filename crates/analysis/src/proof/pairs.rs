@@ -325,6 +325,15 @@ impl Pairs {
         self.words.len() + self.points.len() + self.texts.len()
     }
 
+    /// Where the other side holds what is compared: first bits, and which of 16.
+    pub(crate) fn places(&self) -> Vec<(u32, u16)> {
+        let words = self.words.iter().map(|word| (word.b, word.mask));
+        let points = self.points.iter().map(|point| (point.b, 1));
+        // Length and characters of strings.
+        let texts = self.texts.iter().flat_map(|text| (0..43).map(|word| (text.1 + 16 * word, u16::MAX)));
+        words.chain(points).chain(texts).collect()
+    }
+
     /// The first difference after a scan both sides executed.
     pub(crate) fn difference<B: Side>(&self, a: &Slc, b: &B, buffers: &mut [Vec<u8>; 2]) -> Option<Mismatch> {
         let data = a.machine.data();

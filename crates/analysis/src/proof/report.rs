@@ -5,11 +5,12 @@ use std::fmt;
 use std::time::Duration;
 
 use super::Options;
-use super::campaign::{Campaign, Difference};
+use super::campaign::Campaign;
 use super::goals::{Goal, GoalKind};
 use super::pairs::Pairs;
+use super::play::Difference;
 use super::scenario::Counterexample;
-use super::side::Side;
+use super::side::{Kind, Side};
 
 /// The result of a proof run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -95,6 +96,8 @@ pub struct Report {
     pub not_compared: usize,
     /// Inputs that were changed.
     pub inputs: usize,
+    /// What exactly was compared and changed, by the other program's memory.
+    pub scope: Scope,
     /// All goals with what was reached.
     pub goals: Vec<Goal>,
     /// Contacts and outputs of the other program, seen on and off, of those that ran; nothing where that is
@@ -123,6 +126,26 @@ pub struct Report {
     pub approximations: [Vec<String>; 2],
 }
 
+/// What a run compares and what it changes, named by the other program.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Scope {
+    /// Words compared after every scan: first bit in the memory of the other program, and which of their bits.
+    pub compared: Vec<(u32, u16)>,
+    /// Data that is changed between scans.
+    pub driven: Vec<Driven>,
+}
+
+/// Data of the other program that is changed between scans.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Driven {
+    /// Its address.
+    pub address: String,
+    /// What stands there.
+    pub kind: Kind,
+    /// Least and greatest raw value, where not all of the type are sensible.
+    pub range: Option<(u32, u32)>,
+}
+
 /// What no run exercises, whatever the program.
 pub const NOT_MODELLED: [&str; 4] = [
     "loss of power: only leaving and entering run is tried",
@@ -144,6 +167,7 @@ impl Report {
             compared: 0,
             not_compared: 0,
             inputs: 0,
+            scope: Scope::default(),
             goals: Vec::new(),
             other_coverage: Coverage::default(),
             other_missing: Vec::new(),
@@ -181,6 +205,7 @@ impl Report {
         self.outside = campaign.outside;
         self.time = campaign.time;
         self.inputs = inputs;
+        self.scope = Scope { compared: campaign.pairs.places(), driven: campaign.inputs.driven() };
         let (reached, all) = campaign.seen.both_ways();
         self.other_coverage = Coverage { reached, all };
         let spots = campaign.seen.missing().filter_map(|operation| campaign.both.b.spot(operation));

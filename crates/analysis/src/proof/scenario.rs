@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::campaign::Difference;
 use super::inputs::Inputs;
 use super::pairs::literal;
+use super::play::Difference;
 use super::side::Kind;
 use super::tape::Tape;
 

@@ -98,6 +98,8 @@ pub trait Side: Sized {
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
     operations: Vec<u8>,
+    /// Second minus first value of each comparison when it was made last.
+    gaps: Vec<i64>,
     /// Something was seen for the first time since somebody asked last.
     fresh: bool,
 }
@@ -110,7 +112,7 @@ const ABOVE: u8 = 16;
 
 impl Seen {
     pub(crate) fn new(operations: usize) -> Seen {
-        Seen { operations: vec![0; operations], fresh: false }
+        Seen { operations: vec![0; operations], gaps: vec![0; operations], fresh: false }
     }
 
     fn note(&mut self, operation: u32, what: u8) {
@@ -124,6 +126,16 @@ impl Seen {
     pub(crate) fn missing(&self) -> impl Iterator<Item = u32> {
         let open = |(_, seen): &(u32, &u8)| **seen & (ON | OFF) != ON | OFF;
         (0..).zip(&self.operations).filter(open).map(|(number, _)| number)
+    }
+
+    /// What lacked to equal values when each comparison was made last; 0 for all else.
+    pub(crate) fn gaps(&self) -> &[i64] {
+        &self.gaps
+    }
+
+    /// The comparison has seen equal values.
+    pub(crate) fn was_equal(&self, operation: usize) -> bool {
+        self.operations.get(operation).is_some_and(|seen| seen & EQUAL != 0)
     }
 
     pub(crate) fn take_fresh(&mut self) -> bool {
@@ -145,6 +157,9 @@ impl domore::engine::Watch for Seen {
 
     #[inline]
     fn compare(&mut self, operation: u32, a: Num, b: Num, on: bool) {
+        if let (Num::Int(a), Num::Int(b), Some(gap)) = (a, b, self.gaps.get_mut(operation as usize)) {
+            *gap = b.saturating_sub(a);
+        }
         let near = match (a, b) {
             (Num::Int(a), Num::Int(b)) => match a.saturating_sub(b) {
                 0 => EQUAL,

@@ -165,6 +165,15 @@ impl<'a> Solver<'a> {
         search.plan
     }
 
+    /// Inputs among the words of the instruction of a goal.
+    pub(crate) fn words(&self, goal: &Goal, a: &Slc) -> Vec<usize> {
+        let location = goal.location;
+        let found = self.find(location.file, location.rung, location.instruction);
+        let addresses = found.iter().flat_map(|it| &it.operands).filter_map(Operand::address);
+        let places = addresses.filter(|address| address.is_direct()).filter_map(|it| a.place(&it.to_string()).ok());
+        places.filter(|place| place.1 != Kind::Bit).filter_map(|(at, _)| self.inputs.get(&at).copied()).collect()
+    }
+
     fn rung(&self, file: u16, rung: u32) -> Option<&'a ladder::Rung> {
         self.image.program_file(file)?.rungs.get(rung as usize)
     }

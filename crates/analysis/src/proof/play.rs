@@ -1,0 +1,76 @@
+//! Both machines at one moment: entering run, what comes before a scan, and the comparison after it.
+
+use super::inputs::Inputs;
+use super::pairs::{Mismatch, Pairs};
+use super::side::{Side, Slc};
+use super::tape::{Head, Set};
+
+/// How the two sides differ.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// A value.
+    Value(Mismatch),
+    /// The original stopped and the other did not: why, and the code of its major fault if it has one.
+    OriginalStopped(String, Option<u16>),
+    /// The other stopped and the original did not.
+    OtherStopped(String),
+}
+
+/// Both machines at one moment.
+#[derive(Debug)]
+pub(crate) struct Both<B> {
+    pub(crate) a: Slc,
+    pub(crate) b: B,
+}
+
+impl<B: Side> Both<B> {
+    pub(crate) fn fork(&self) -> Both<B> {
+        Both { a: self.a.fork(), b: self.b.fork() }
+    }
+
+    pub(crate) fn copy_from(&mut self, other: &Both<B>) {
+        self.a.copy_from(&other.a);
+        self.b.copy_from(&other.b);
+    }
+}
+
+/// Goes to run for the first time.
+pub(crate) fn enter<B: Side>(both: &mut Both<B>) {
+    both.a.enter_run();
+    both.b.enter_run();
+}
+
+/// Does to both sides what comes before a scan.
+pub(crate) fn apply<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, head: Head, sets: &[Set]) {
+    if head.program_run {
+        both.a.leave_run();
+        both.b.leave_run();
+        write(both, inputs, sets);
+        both.a.enter_run();
+        both.b.enter_run();
+    }
+    write(both, inputs, sets);
+}
+
+fn write<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, sets: &[Set]) {
+    for (index, value) in sets {
+        if let Some(input) = inputs.all.get(usize::from(*index)) {
+            both.a.write(&input.a, *value);
+            both.b.write(&input.b, *value);
+        }
+    }
+}
+
+/// Compares both sides after a scan.
+pub(crate) fn compare<B: Side>(both: &Both<B>, pairs: &Pairs, buffers: &mut [Vec<u8>; 2]) -> Option<Difference> {
+    match (both.a.stopped(), both.b.stopped()) {
+        (None, None) => pairs.difference(&both.a, &both.b, buffers).map(Difference::Value),
+        // Stopped alike: outputs are off on both; data is what the fault left.
+        (Some(_), Some(_)) => pairs.output_on(&both.b).map(Difference::Value),
+        // The inputs left the conditions under which the programs are the same: nothing follows from it.
+        (Some(_), None) if both.a.machine.fault().is_some_and(|fault| pairs.is_stated(fault)) => None,
+        (Some(_), None) | (None, Some(_)) if pairs.stops_unknown => None,
+        (Some(why), None) => Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code))),
+        (None, Some(why)) => Some(Difference::OtherStopped(why)),
+    }
+}
