@@ -1,14 +1,29 @@
 //! Whether a proof run sees a converted program that does not do the same: every kind of single mistake, in
-//! the program a migration makes of each proven example.
+//! the program a migration makes of each proven example. What it does not see must be shown equivalent.
 
+#[path = "mutants/facts.rs"]
+mod facts;
+#[path = "mutants/gates.rs"]
+mod gates;
 mod migrated;
 #[path = "mutants/mutate.rs"]
 mod mutate;
+#[path = "mutants/relations.rs"]
+mod relations;
+#[path = "mutants/same.rs"]
+mod same;
+#[path = "mutants/scan.rs"]
+mod scan;
+#[path = "mutants/words.rs"]
+mod words;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use analysis::proof::{Options, Verdict, prove_domore};
+use analysis::proof::{Options, Report, Verdict, fates, prove_domore};
+use domore::{Instruction, Part, Project};
 use migrated::Migrated;
+use mutate::Mutant;
+use same::{Judge, Same};
 
 /// Mutants of each program in the normal test run, which leaves the corpus to the nightly one.
 const FEW: usize = 25;
@@ -16,73 +31,205 @@ const FEW: usize = 25;
 /// How many mutants of each program, and scans a mutant has to be found in.
 fn effort() -> (usize, u64) {
     match std::env::var("RUNGS_MUTANTS").ok().and_then(|text| text.parse().ok()) {
-        Some(count) => (count, 100_000),
-        None => (FEW, 10_000),
+        Some(count) => (count, 400_000),
+        None => (FEW, 40_000),
     }
 }
+
+const HEADS: [&str; 6] = ["found", "unchanged", "helpers", "related", "refused", "unexplained"];
+
+/// Counts by [`HEADS`].
+type Row = [usize; 6];
 
 #[test]
 fn mutants_are_reported_as_different() {
     let (count, scans) = effort();
-    // Found, equivalent by argument, not exercised by the run (which lists it), in the frame around the
-    // program, missed.
-    let mut table: BTreeMap<mutate::Kind, [usize; 5]> = BTreeMap::new();
-    let mut lines = Vec::new();
+    let (mut kinds, mut programs): (BTreeMap<String, Row>, BTreeMap<String, Row>) = Default::default();
     for program in migrated::proven(count > FEW) {
-        let base = prove(&program, &program.project, scans);
+        let base = prove(&program, &program.project, scans.min(100_000));
         assert_ne!(base.verdict(), Verdict::Different, "{}: {base}", program.name);
-        let open: BTreeSet<_> = base.other_missing.iter().copied().collect();
+        let mut judge = Judge::new(&program.project, &base.scope);
         let all = mutate::all(&program.project);
         assert!(all.len() >= 200, "{}: only {} mutants", program.name, all.len());
-        // Spread over the whole program.
-        let wanted = count.min(all.len());
-        for (index, mutant) in all.iter().enumerate() {
-            if index * wanted / all.len() == (index + 1) * wanted / all.len() {
-                continue;
-            }
-            let column = match prove(&program, &mutant.project, scans).verdict() {
-                Verdict::Different => 0,
-                // Refused by the engine, or an address beyond its block: no controller would load it.
-                Verdict::NotComparable => continue,
-                Verdict::NoDifference if mutate::is_equivalent(mutant, &program.project) => 1,
-                Verdict::NoDifference if is_open(mutant, &open) => 2,
-                Verdict::NoDifference if !mutant.converted => 3,
-                Verdict::NoDifference => 4,
-            };
-            table.entry(mutant.kind).or_default()[column] += 1;
-            if column > 0 {
-                let why = ["", "equivalent", "not exercised", "frame", "missed"][column];
-                lines.push(format!("{why}: {}: {:?} {}", program.name, mutant.kind, mutant.what));
-            }
+        for mutant in spread(&all, count) {
+            let column = try_one(&program, mutant, scans, &mut judge);
+            kinds.entry(format!("{:?}", mutant.kind)).or_default()[column] += 1;
+            programs.entry(program.name.clone()).or_default()[column] += 1;
+        }
+        println!("{}: {:?}", program.name, programs.get(&program.name));
+    }
+    let mut sum = Row::default();
+    programs.values().for_each(|row| sum.iter_mut().zip(row).for_each(|(sum, count)| *sum += count));
+    println!("{:34}{}", "", HEADS.map(|head| format!("{head:>12}")).concat());
+    for (name, row) in kinds.iter().chain(&programs).chain([(&"all".to_owned(), &sum)]) {
+        println!("{name:34}{}", row.map(|count| format!("{count:>12}")).concat());
+    }
+    for (name, row) in programs.iter().chain([(&"all".to_owned(), &sum)]) {
+        let (found, unexplained) = (row[0], row[5]);
+        let few = unexplained * 100 <= (found + unexplained) * MOST_UNEXPLAINED;
+        assert!(few, "{name}: {unexplained} mutants are neither found, {found} are, nor shown equivalent");
+    }
+}
+
+/// Percent of the mutants not shown equivalent that may stay unfound: 1 is what is wanted, `docs/status.md` says
+/// where it is more.
+const MOST_UNEXPLAINED: usize = 10;
+
+/// So many mutants from all over the program; those that no controller would load come besides.
+fn spread(all: &[Mutant], count: usize) -> impl Iterator<Item = &Mutant> {
+    let wanted = count.min(all.len());
+    let chosen = move |index: &usize| index * wanted / all.len() != (index + 1) * wanted / all.len();
+    (0..all.len()).filter(chosen).filter_map(|index| all.get(index))
+}
+
+/// The column of a mutant.
+fn try_one(program: &Migrated, mutant: &Mutant, scans: u64, judge: &mut Judge<'_>) -> usize {
+    let mut answer = Same::Open("not asked".to_owned());
+    // A short run finds most of them; what cannot be found needs no long one.
+    for thorough in [false, true] {
+        match prove(program, &mutant.project, if thorough { scans } else { scans / 20 }).verdict() {
+            Verdict::Different => return 0,
+            // Refused by the engine, or an address beyond its block: no controller would load it.
+            Verdict::NotComparable => return 4,
+            Verdict::NoDifference => answer = judge.ask(mutant, thorough),
+        }
+        match answer {
+            Same::Yes { helpers: 0, related: false } => return 1,
+            Same::Yes { related: false, .. } => return 2,
+            Same::Yes { .. } => return 3,
+            _ => {}
         }
     }
-    lines.iter().for_each(|line| println!("{line}"));
-    let heads = ["found", "equivalent", "not exercised", "frame", "missed"];
-    println!("{:20} {}", "mutation", heads.map(|head| format!("{head:>14}")).concat());
-    for (kind, row) in &table {
-        println!("{:20} {}", format!("{kind:?}"), row.map(|count| format!("{count:>14}")).concat());
-    }
-    let sum = |column: usize| table.values().map(|row| row[column]).sum::<usize>();
-    let sums = [0, 1, 2, 3, 4].map(sum);
-    println!("{:20} {}", "all", sums.map(|count| format!("{count:>14}")).concat());
-    let [found, _, _, _, missed] = sums;
-    assert!(missed * 100 <= (found + missed) * MOST_MISSED, "{missed} mutants were missed, {found} found");
+    let why = judge.why(&answer);
+    println!("unexplained: {}: {:?} {} -- {why}", program.name, mutant.kind, mutant.what);
+    5
 }
 
-/// Percent of the mutants of converted, exercised rungs that may be missed: see docs/proof.md for which those
-/// are.
-const MOST_MISSED: usize = 15;
-
-/// The run itself says that it has not seen what was mutated do anything.
-fn is_open(mutant: &mutate::Mutant, open: &BTreeSet<(usize, usize, usize)>) -> bool {
-    let (block, rung, instruction) = mutant.place;
-    match instruction {
-        Some(instruction) => open.contains(&(block, rung, instruction)),
-        None => open.iter().any(|spot| (spot.0, spot.1) == (block, rung)),
-    }
-}
-
-fn prove(program: &Migrated, project: &domore::Project, scans: u64) -> analysis::proof::Report {
+fn prove(program: &Migrated, project: &Project, scans: u64) -> Report {
     let options = Options { scans, minimize: false, ..Options::default() };
     prove_domore(&program.image, project, &program.map, Some(&program.fates), &options)
+}
+
+#[test]
+fn no_rung_goes_missing_silently() {
+    // That nothing stands for a rung is told without a scan. A call that is left out shows in what the called
+    // rungs do not do.
+    let short = Options { scans: 5, minimize: false, ..Options::default() };
+    let long = Options { scans: effort().1, ..short.clone() };
+    for program in migrated::proven(effort().0 > FEW) {
+        let mut tried = 0;
+        for (part, block) in program.project.parts.iter().enumerate() {
+            let Part::Code(code) = block else { continue };
+            for (number, rung) in code.rungs.iter().enumerate() {
+                let mut lines = rung.comment.iter().flat_map(|comment| &comment.lines);
+                if !lines.any(|line| line.starts_with("SLC ")) || rung.instructions.iter().all(|it| it.is("NOP")) {
+                    continue;
+                }
+                // With its mark, and its mark alone kept.
+                for keeps_mark in [false, true] {
+                    let mut project = program.project.clone();
+                    if let Some(Part::Code(code)) = project.parts.get_mut(part) {
+                        if keeps_mark {
+                            code.rungs[number].instructions = vec![Instruction::new("NOP", [""; 0])];
+                        } else {
+                            code.rungs.remove(number);
+                        }
+                    }
+                    let fates = fates(&project);
+                    let differs = |options: &Options| {
+                        let report = prove_domore(&program.image, &project, &program.map, fates.as_deref(), options);
+                        report.verdict() == Verdict::Different
+                    };
+                    let what = format!("{}: {} rung {}", program.name, code.name, number + 1);
+                    assert!(differs(&short) || differs(&long), "{what}, mark kept: {keeps_mark}");
+                    tried += 1;
+                }
+            }
+        }
+        assert!(tried >= 4, "{}: only {tried} rungs left out", program.name);
+    }
+}
+
+/// Scans in which the followed program is compared with the machine.
+const ALIKE: usize = 60;
+
+#[test]
+fn what_is_followed_is_what_the_engine_does() {
+    for program in migrated::proven(true) {
+        let scope = prove(&program, &program.project, 2).scope;
+        let model = scan::Model::new(&program.project).expect("the program is followed");
+        let compiled = domore::engine::Program::compile(&program.project, &Default::default()).expect("it runs");
+        let mut machine = domore::engine::Machine::new(compiled);
+        machine.enter_run();
+        let mut memory = Memory(model.hidden().collect());
+        let (mut seed, mut told) = (1u64, 0);
+        let mut random = |limit: u64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) % limit.max(1)
+        };
+        for number in 0..ALIKE {
+            let mode = number == 0 || random(40) == 0;
+            let time = if number == 0 { 0 } else { [1, 10, 990, 1000, 2001, 70_000, 3_599_987][random(7) as usize] };
+            if mode && number > 0 {
+                machine.enter_program();
+                machine.enter_run();
+            }
+            let mut writes = Vec::new();
+            for driven in &scope.driven {
+                let (at, bits) = match (model.map.resolve_text(&driven.address), driven.kind) {
+                    (Ok(domore::memory::Resolved::Place(place)), analysis::proof::Kind::Bit) => (place.bit, 1),
+                    (Ok(domore::memory::Resolved::Place(place)), analysis::proof::Kind::Word) => (place.bit, 16),
+                    _ => continue,
+                };
+                let kept = (0..bits).fold(0u64, |all, bit| all | u64::from(machine.data().bit(at + bit)) << bit);
+                let value = match driven.range {
+                    _ if number == 0 || random(3) > 0 => kept,
+                    Some((least, most)) => u64::from(least) + random(u64::from(most - least) + 1),
+                    None => random(1 << bits),
+                };
+                if number > 0 && !driven.address.starts_with("SDT0") {
+                    let handle = machine.handle(&driven.address).expect("a place");
+                    machine.set_number(handle, domore::memory::Num::Int(value as i64));
+                    let word = (0..bits).map(|bit| (value >> bit & 1) as gates::Line).collect();
+                    writes.push((at, word, gates::ON));
+                }
+            }
+            machine.scan(std::time::Duration::from_millis(time));
+            let (mut graph, mut outside) = (gates::Gates::new(), scan::Outside::default());
+            let begin = scan::Begin { mode: u32::from(mode), time: words::constant(time as i64), writes };
+            let mut followed =
+                scan::Scan::new(&model, None, &memory, (&mut graph, &mut outside)).expect("it can be followed");
+            followed.run(&begin).expect("it can be followed");
+            let after = followed.memory;
+            for (at, mask) in &scope.compared {
+                for bit in (0..16).filter(|bit| mask >> bit & 1 == 1) {
+                    let line = after.get(&(at + bit)).copied().unwrap_or_else(|| scan::Start::line(&memory, at + bit));
+                    if line < 2 {
+                        told += 1;
+                        let real = machine.data().bit(at + bit);
+                        let name = model.name(at + bit);
+                        assert_eq!(line == gates::ON, real, "{}: scan {number}: {name}", program.name);
+                    }
+                }
+            }
+            // What comes from outside, the clock for one, is taken from the machine.
+            for (bit, line) in after {
+                let line = if line < 2 { line } else { u32::from(machine.data().bit(bit)) };
+                memory.0.insert(bit, line);
+            }
+            if machine.mode() != domore::engine::Mode::Run {
+                break;
+            }
+        }
+        assert!(told > 500, "{}: only {told} bits compared", program.name);
+    }
+}
+
+/// Memory as the followed program left it.
+struct Memory(std::collections::HashMap<u32, gates::Line>);
+
+impl scan::Start for Memory {
+    fn line(&self, bit: u32) -> gates::Line {
+        self.0.get(&bit).copied().unwrap_or(gates::OFF)
+    }
 }

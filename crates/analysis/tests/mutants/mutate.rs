@@ -29,8 +29,6 @@ pub(crate) struct Mutant {
     pub(crate) kind: Kind,
     /// Code block and rung, counted from 0, and the instruction; none for a whole rung.
     pub(crate) place: (usize, usize, Option<usize>),
-    /// The rung was made from one of the original, and does not belong to the frame around them.
-    pub(crate) converted: bool,
     /// Code block, rung and change, in words.
     pub(crate) what: String,
     pub(crate) project: Project,
@@ -54,52 +52,11 @@ pub(crate) fn all(project: &Project) -> Vec<Mutant> {
                     }
                 }
                 let what = format!("{} rung {}: {what}", code.name, number + 1);
-                let mut lines = rung.comment.iter().flat_map(|comment| &comment.lines);
-                let converted = lines.any(|line| line.starts_with("SLC "));
-                mutants.push(Mutant { kind, place: (block, number, index), converted, what, project });
+                mutants.push(Mutant { kind, place: (block, number, index), what, project });
             }
         }
     }
     mutants
-}
-
-/// Mutants that do what the program does, by argument: a bit is reset that nothing ever sets, or a constant is
-/// stored where the initial value is the same and nothing else writes.
-pub(crate) fn is_equivalent(mutant: &Mutant, project: &Project) -> bool {
-    let (block, rung, Some(index)) = mutant.place else { return false };
-    let Some(code) = project.code_blocks().nth(block) else { return false };
-    let Some(it) = code.rungs.get(rung).and_then(|rung| rung.instructions.get(index)) else { return false };
-    let all = || project.code_blocks().flat_map(|code| &code.rungs).flat_map(|rung| &rung.instructions);
-    let never_set = |bit: &str| {
-        let word = bit.split(':').next().unwrap_or(bit);
-        !all().any(|it| match it.mnemonic.as_str() {
-            "SET" | "OUT" => it.operand(0) == bit,
-            "MATH" => it.operand(0) == word,
-            "MOVE" => it.operand(1) == word,
-            _ => false,
-        })
-    };
-    match (it.mnemonic.as_str(), mutant.kind) {
-        ("RST", Kind::ResetRemoved) => never_set(it.operand(0)),
-        ("RST", Kind::AddressOffByOne) => {
-            let other = mutant.project.code_blocks().nth(block).and_then(|code| code.rungs.get(rung));
-            let other = other.and_then(|rung| rung.instructions.get(index));
-            never_set(it.operand(0)) && other.is_some_and(|other| never_set(other.operand(0)))
-        }
-        ("MOVE", Kind::InstructionDropped) => {
-            let (value, to) = (it.operand(0), it.operand(1));
-            let row = format!("{to} {to} {value}");
-            let writers = all().filter(|it| match it.mnemonic.as_str() {
-                "MATH" => it.operand(0) == to,
-                "MOVE" => it.operand(1) == to,
-                _ => false,
-            });
-            value.parse::<i64>().is_ok()
-                && writers.count() == 1
-                && all().any(|it| it.is("INIT") && it.operand(0).contains(&row))
-        }
-        _ => false,
-    }
 }
 
 type Change = (Kind, Option<usize>, String, Option<Rung>);
@@ -136,7 +93,7 @@ fn of_rung(rung: &Rung) -> Vec<Change> {
         match it.mnemonic.as_str() {
             "ORSTR" => push(Kind::LegSwapped, Some(renamed(it, "ANDSTR"))),
             "ANDSTR" => push(Kind::LegSwapped, Some(renamed(it, "ORSTR"))),
-            "RST" => push(Kind::ResetRemoved, None),
+            "RST" | "RSTR" => push(Kind::ResetRemoved, None),
             // Nothing looks at the power behind a NOT that ends a rung or a part of it.
             "NOT" if rung.instructions.get(index + 1).is_none_or(|next| next.is("POPBOOL")) => {}
             "OUT" | "SET" | "MATH" | "MOVE" | "COPY" | "TMR" | "CALL" | "INIT" | "NOT" => {
@@ -168,12 +125,16 @@ fn inverted(name: &str) -> Option<String> {
     }
 }
 
+/// The same values compared with the relation beside it, and with the opposite one where there is none.
 fn other_relation(name: &str) -> Option<String> {
     const RELATIONS: [(&str, &str); 6] =
-        [("<=", "<"), (">=", ">"), ("!=", "=="), ("==", "!="), ("<", "<="), (">", ">=")];
+        [("LE", "LT"), ("GE", "GT"), ("NE", "E"), ("E", "NE"), ("LT", "LE"), ("GT", "GE")];
+    let entry = domore::instruction::by_mnemonic(name)?;
+    let domore::instruction::Effect::Contact { test: domore::instruction::Test::Compare(_), .. } = entry.effect else {
+        return None;
+    };
     let head = ["STR", "AND", "OR"].into_iter().find(|head| name.starts_with(head))?;
-    let relation = name.strip_prefix(head)?;
-    let (_, other) = RELATIONS.iter().find(|row| row.0 == relation)?;
+    let (_, other) = RELATIONS.iter().find(|row| name.strip_prefix(head) == Some(row.0))?;
     Some(format!("{head}{other}"))
 }
 
