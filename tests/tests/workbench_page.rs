@@ -1,0 +1,309 @@
+//! The workbench in a real browser: run, force, step back, edit, trend, record, replay.
+
+use std::net::SocketAddr;
+use std::path::Path;
+use std::sync::Arc;
+
+use rungs_tests::browser::{Browser, key};
+use server::plant::Plant;
+use server::view::{DoMoreProgram, Program, SlcProgram};
+use server::workbench::{Change, DoMore, Slc, Subject, Workbench};
+use server::{Access, engine};
+use sim::scenario::Scenario;
+
+const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/");
+
+fn project(path: &Path) -> ladder::Project {
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    convert::open(&bytes, &name, rss::Mode::Permissive).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+fn slc(path: &Path) -> (Box<dyn Subject>, Arc<dyn Program>) {
+    let project = project(path);
+    let program = sim::Program::compile(&project.main, &sim::Options::default()).expect("every instruction runs");
+    let machine = Slc::new(sim::Machine::new(program), &project.main);
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    (Box::new(machine), Arc::new(SlcProgram::new(name, project, Vec::new())))
+}
+
+fn do_more(path: &Path) -> (Box<dyn Subject>, Arc<dyn Program>) {
+    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let project = domore::text::read(&text).expect("reads").project;
+    let program = domore::engine::Program::compile(&project, &Default::default()).expect("compiles");
+    let machine = DoMore::new(program, &project);
+    (Box::new(machine), Arc::new(DoMoreProgram::new("program.txt".to_owned(), project, Vec::new()).expect("memory")))
+}
+
+/// Serves a program until the tests end; answers the address of its page.
+fn serve((machine, program): (Box<dyn Subject>, Arc<dyn Program>), plant: Option<&str>) -> String {
+    let mut bench = Workbench::new(machine);
+    if let Some(name) = plant {
+        let text = std::fs::read_to_string(format!("{EXAMPLES}{name}")).expect(name);
+        let plant = Plant::parse(&text).unwrap_or_else(|why| panic!("{name}: {why}"));
+        bench.change(Change::Plant(Some(Box::new(plant)))).expect("wires");
+    }
+    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
+    std::thread::spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+        runtime.block_on(async {
+            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+            told.send(listener.local_addr().expect("bound")).expect("the test waits");
+            let engine = engine::start(bench).expect("a thread");
+            server::serve(listener, engine, program, Access::default(), std::future::pending()).await
+        })
+    });
+    format!("http://{}/", address.recv().expect("the server starts"))
+}
+
+fn motor() -> String {
+    serve(slc(Path::new(&format!("{EXAMPLES}motor/motor.RSS"))), None)
+}
+
+/// The page of one view.
+fn show(browser: &Browser, page: &str, view: &str) {
+    browser.go(&format!("{page}#{view}"));
+    browser.wait_for("document.querySelector('#view h2') && document.querySelector('#status').textContent");
+}
+
+fn lamp(address: &str) -> String {
+    format!(".lamp[data-address='{address}']")
+}
+
+fn toggle(browser: &Browser, address: &str) {
+    let lamp = lamp(address);
+    let before = browser.is(&format!("document.querySelector(\"{lamp}\").ariaChecked === 'true'"));
+    browser.click(&lamp);
+    browser.wait_for(&format!("document.querySelector(\"{lamp}\").ariaChecked === '{}'", !before));
+}
+
+fn scan(browser: &Browser) -> f64 {
+    browser.number("document.querySelector('#status').textContent.match(/scan (\\d+)/)[1]")
+}
+
+fn steps(browser: &Browser, count: usize) {
+    for _ in 0..count {
+        let before = scan(browser);
+        browser.click("#step");
+        browser.wait_for(&format!("document.querySelector('#status').textContent.includes('scan {} ')", before + 1.0));
+    }
+}
+
+/// Stop button and overload relay are healthy when closed.
+fn make_ready(browser: &Browser, page: &str) {
+    show(browser, page, "points");
+    browser.wait_for(&format!("document.querySelector(\"{}\")?.ariaChecked === 'false'", lamp("I:0.0/1")));
+    toggle(browser, "I:0.0/1");
+    toggle(browser, "I:0.0/2");
+}
+
+#[test]
+fn the_motor_starts_and_every_scan_can_be_gone_back() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    make_ready(&browser, &page);
+    steps(&browser, 2);
+    toggle(&browser, "I:0.0/0");
+    steps(&browser, 1);
+    // The start button lights the rung, and the warning timer begins.
+    show(&browser, &page, "ladder/2");
+    browser.wait_for("document.querySelector('.rung svg g.i.on')");
+    browser.wait_for("document.querySelector('.rung svg path.w.on')");
+    browser.screenshot("workbench-ladder");
+    let lit = "document.querySelectorAll('.rung svg g.i.on').length";
+    let before = browser.number(lit);
+    browser.click("#run");
+    browser.wait_for("document.querySelector('#run').textContent === 'Pause'");
+    show(&browser, &page, "timers");
+    let accumulated = "Number(document.querySelector(\".cell[data-address='T4:0.ACC']\").textContent)";
+    browser.wait_for(&format!("{accumulated} > 20"));
+    browser.wait_for("document.querySelector('meter').value > 0");
+    browser.click("#run");
+    browser.wait_for("document.querySelector('#run').textContent === 'Run'");
+    browser.wait_for(&format!("{accumulated} > 0"));
+    let (count, at) = (browser.number(accumulated), scan(&browser));
+    for _ in 0..3 {
+        browser.click("#back");
+    }
+    browser.wait_for(&format!("document.querySelector('#status').textContent.includes('scan {} ')", at - 3.0));
+    browser.wait_for(&format!("{accumulated} === {}", count - 3.0));
+    // Back to the scan before the start button.
+    show(&browser, &page, "ladder/2");
+    browser.wait_for("document.querySelector('.rung svg g.i')");
+    browser.run("document.querySelector('#view').focus()");
+    while scan(&browser) > 2.0 {
+        let now = scan(&browser);
+        browser.keys(if now > 12.0 { "B" } else { "b" });
+        browser.wait_for(&format!("!document.querySelector('#status').textContent.includes('scan {now} ')"));
+    }
+    browser.wait_for(&format!("{lit} < {before}"));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn a_force_is_never_out_of_sight() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    show(&browser, &page, "forces");
+    browser.click("#view input");
+    browser.keys("O:0.0/3");
+    browser.click("#view button[title='Force on']");
+    browser.wait_for("document.querySelector('.banner.forces')?.textContent.includes('disabled')");
+    browser.click("#view .row button");
+    browser.wait_for("document.querySelector('.banner.forces')?.textContent.includes('ENABLED')");
+    show(&browser, &page, "ladder/2");
+    browser.wait_for("document.querySelector('.banner.forces') && document.querySelector('g.forced-on')");
+    browser.screenshot("workbench-force");
+    show(&browser, &page, "forces");
+    browser.click("#view tbody button[title^='Remove']");
+    browser.wait_for("!document.querySelector('.banner.forces')");
+    // What cannot be forced is refused with a reason.
+    browser.click("#view input");
+    browser.keys("N7:0");
+    browser.click("#view button[title='Force on']");
+    browser.wait_for("document.querySelector('.banner.wrong')?.textContent.includes('N7:0')");
+    // The refusal itself is logged by the browser as a request that failed.
+    assert!(browser.complaints().iter().all(|line| line.contains("422")));
+}
+
+#[test]
+fn a_preset_is_edited_and_a_trend_followed() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    show(&browser, &page, "data/T4");
+    let preset = ".cell[data-address='T4:0.PRE']";
+    browser.wait_for(&format!("document.querySelector(\"{preset}\")?.textContent > 0"));
+    browser.click(preset);
+    browser.wait_for("document.querySelector('#ask').open");
+    browser.keys(&format!("777{}", key::ENTER));
+    browser.wait_for(&format!("document.querySelector(\"{preset}\").textContent === '777'"));
+    make_ready(&browser, &page);
+    toggle(&browser, "I:0.0/0");
+    show(&browser, &page, "trend");
+    browser.click("#view form input");
+    browser.keys(&format!("T4:0.ACC{}", key::ENTER));
+    browser.wait_for("document.querySelectorAll('#view tbody tr').length === 1");
+    steps(&browser, 5);
+    browser.wait_for("document.querySelector('#view tbody .now').textContent === '4'");
+    // Something is drawn in the colour of the line.
+    let inked = "(() => { const c = document.querySelector('#view canvas'); \
+                 const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
+                 const seen = new Set(); for (let i = 0; i < d.length; i += 4) seen.add(d[i] << 16 | d[i+1] << 8 | d[i+2]); \
+                 return seen.size })()";
+    browser.wait_for(&format!("{inked} > 3"));
+    browser.screenshot("workbench-trend");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn what_is_recorded_replays_with_the_same_result() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    show(&browser, &page, "ladder/2");
+    browser.click("#more");
+    browser.wait_for("document.querySelector('#record')");
+    browser.click("#record");
+    browser.wait_for("document.querySelector('.banner')?.textContent.includes('Recording')");
+    make_ready(&browser, &page);
+    toggle(&browser, "I:0.0/0");
+    steps(&browser, 4);
+    toggle(&browser, "I:0.0/0");
+    steps(&browser, 3);
+    browser.click("#more");
+    browser.click("#expect");
+    browser.wait_for("document.querySelector('#status').textContent.includes('scan 7 ')");
+    browser.click("#record-stop");
+    browser.wait_for("document.querySelector('#view pre').textContent");
+    assert_eq!(browser.text(".problems"), "Replayed on a fresh machine: all expectations are met.");
+    let text = browser.run("return document.querySelector('#view pre').textContent");
+    let text = text.as_str().unwrap_or_default();
+    let scenario = Scenario::parse(text).unwrap_or_else(|why| panic!("{why}\n{text}"));
+    let project = project(Path::new(&format!("{EXAMPLES}motor/motor.RSS")));
+    let program = sim::Program::compile(&project.main, &sim::Options::default()).expect("runs");
+    let report = sim::scenario::play(&scenario, &mut sim::Machine::new(program), Vec::new()).expect("plays");
+    assert_eq!((report.failures.len(), report.scans), (0, 7), "{text}");
+    assert!(report.checks > 3, "outputs are looked at: {text}");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn search_leads_to_uses_and_rungs() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    show(&browser, &page, "ladder/2");
+    browser.click("#search-button");
+    browser.wait_for("document.querySelector('#palette').open");
+    browser.keys("HORN");
+    browser.wait_for("document.querySelectorAll('#palette li').length > 1");
+    browser.keys(key::ENTER);
+    browser.wait_for("!document.querySelector('#detail').hidden");
+    assert_eq!(browser.text("#detail h2"), "O:0.0/1");
+    browser.click("#detail .uses button");
+    browser.wait_for("document.querySelector('.rung.goal svg')");
+    let goal = "document.querySelector('.rung.goal').getBoundingClientRect()";
+    browser.wait_for(&format!("{goal}.top < innerHeight && {goal}.bottom > 0"));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn two_pages_see_one_truth() {
+    let (Some(one), Some(two)) = (Browser::start(), Browser::start()) else { return };
+    let page = motor();
+    show(&one, &page, "points");
+    show(&two, &page, "points");
+    toggle(&one, "I:0.0/1");
+    two.wait_for(&format!("document.querySelector(\"{}\").ariaChecked === 'true'", lamp("I:0.0/1")));
+    toggle(&two, "I:0.0/1");
+    one.wait_for(&format!("document.querySelector(\"{}\").ariaChecked === 'false'", lamp("I:0.0/1")));
+}
+
+#[test]
+fn a_plant_closes_the_loop_of_either_dialect() {
+    let Some(browser) = Browser::start() else { return };
+    let page = serve(slc(Path::new(&format!("{EXAMPLES}batch/batch.RSS"))), Some("batch/plant.toml"));
+    show(&browser, &page, "points");
+    toggle(&browser, "I:0.0/0");
+    toggle(&browser, "I:0.0/1");
+    browser.run(
+        "return fetch('/api/control', {method: 'POST', headers: {'Content-Type': 'application/json'}, \
+         body: JSON.stringify({do: 'until', address: 'C5:1.ACC', relation: '>=', value: 2, scans: 20000})})",
+    );
+    browser.wait_for("document.querySelector('#banners').textContent.includes('the condition holds')");
+    assert!(!browser.is("document.querySelector('.banner.wrong')"));
+    let page =
+        serve(do_more(Path::new(&format!("{EXAMPLES}filling_domore/filling.txt"))), Some("filling_domore/plant.toml"));
+    show(&browser, &page, "points");
+    toggle(&browser, "X0");
+    steps(&browser, 3);
+    browser.wait_for(&format!("document.querySelector(\"{}\").ariaChecked === 'true'", lamp("Y0")));
+    show(&browser, &page, "ladder/1");
+    browser.wait_for("document.querySelector('.rung svg g.i.on') && document.querySelector('.rung svg path.w.on')");
+    browser.screenshot("workbench-do-more");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn pages_fit_three_widths_and_large_text() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    for (width, height) in [(1400, 900), (820, 1100), (480, 900)] {
+        browser.resize(width, height);
+        for view in ["ladder/2", "points", "timers"] {
+            show(&browser, &page, view);
+            browser.screenshot(&format!("workbench-{}-{width}", view.replace('/', "-")));
+            let name = format!("{view} at {width}");
+            assert!(
+                browser.is("document.documentElement.scrollWidth <= innerWidth + 1"),
+                "{name} is wider than the window"
+            );
+        }
+    }
+    browser.resize(1280, 900);
+    show(&browser, &page, "ladder/2");
+    browser.run("document.documentElement.style.fontSize = '200%'");
+    browser.wait_for("document.querySelector('.rung svg')");
+    assert!(browser.is("document.documentElement.scrollWidth <= innerWidth + 1"), "text of twice the size");
+    browser.screenshot("workbench-large-text");
+    browser.click("#step");
+    browser.wait_for("document.querySelector('#status').textContent.includes('scan 1 ')");
+}
