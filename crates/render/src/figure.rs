@@ -177,6 +177,10 @@ fn right_end(item: &Item) -> usize {
 }
 
 fn finished(mut group: Group, figure: &Figure) -> Group {
+    // Flags beside a box (EN, DN) have bits of their own: that the box has power says nothing about them.
+    if group.inks.iter().any(|ink| matches!(ink, Ink::Stroke(Pen::Frame, _))) {
+        group.bars.clear();
+    }
     put_behind(&mut group.inks, |area| area);
     let areas = group.inks.iter().map(extent);
     let Some(all) = areas.reduce(|a, b| {

@@ -163,6 +163,15 @@ fn power_flows_through_branches() {
 }
 
 #[test]
+fn a_box_with_power_says_nothing_about_its_flags() {
+    let scene = scene(&image(), vec![ins("XIC", "B3:0/0"), ins("TON", "T4:0 0.01 100 0")], &Documentation::default());
+    let mark = |_| Mark { on: Some(true), ..Mark::default() };
+    let svg = drawing(&scene, &Options { mark: &mark, ..Options::default() });
+    assert_eq!(group(&svg, 0).matches("class=\"bar\"").count(), 2, "both sides of the contact");
+    assert_eq!(group(&svg, 1).matches("class=\"bar\"").count(), 0, "EN and DN are bits of their own");
+}
+
+#[test]
 fn live_values_take_the_place_of_stored_ones() {
     let rungs = file(vec![Rung::new(vec![ins("EQU", "N7:0=1 5=5"), ins("TON", "T4:0 0.01 500 120")])]);
     let value = |instruction: usize, operand: usize| match (instruction, operand) {

@@ -12,7 +12,8 @@ const [EXECUTED, AFTER, CHANGED] = [1, 4, 8];
 
 /** Columns of a drawing that fit. */
 function columns(view) {
-  return Math.max(60, Math.min(160, Math.floor((view.clientWidth - 40) / 8)));
+  // Padding, the mark of the rung a link led to, and the bar that scrolls.
+  return Math.max(60, Math.min(160, Math.floor((view.clientWidth - 64) / 8)));
 }
 
 export async function ladder(app, view, routine, goal) {
