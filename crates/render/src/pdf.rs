@@ -1,6 +1,6 @@
 //! Rungs painted on pages of a PDF document: vector lines, and texts that can be selected and searched.
 //!
-//! A [`Canvas`] is one page being painted; [`rung`] paints a scene, or some rows of it, anywhere on it. What
+//! A [`Canvas`] is one page being painted; [`rung()`] paints a scene, or some rows of it, anywhere on it. What
 //! makes pages a document (page tree, links, bookmarks) is not here.
 //!
 //! ```

@@ -3,7 +3,7 @@
 //!
 //! A project file holds the time of its last save and of its creation, the name and program ID of its
 //! processor; RSLogix renames the file it replaces to `.._BAKnnn`. [`machines`] joins saves by these and
-//! by what their programs have in common, [`steps`] compares each with the one before. Nothing here
+//! by what their programs have in common, [`steps()`] compares each with the one before. Nothing here
 //! opens a file or asks a clock: names and times are arguments.
 
 mod group;

@@ -10,7 +10,7 @@
 //!
 //! A row with `words` tells where the word of the first column lies (`domore`), and how many words follow it there.
 //! To move data, change `domore`. A row without gives an address its nickname and description, and moves a
-//! single point of I or O: [`Wish`]. Rows whose `slc` begins with `helper` only inform.
+//! single point of I or O. Rows whose `slc` begins with `helper` only inform.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
