@@ -1,6 +1,9 @@
 //! A counterexample as scenarios that anybody can run again: one for each side.
 
 use std::fmt::Write;
+use std::time::Duration;
+
+use sim::scenario::spell::{duration, quoted};
 
 use super::inputs::Inputs;
 use super::pairs::literal;
@@ -94,14 +97,14 @@ pub(crate) fn write<T>(
         let mut text = String::new();
         let side = if own { "the original, which behaves so" } else { "the other program, which behaves otherwise" };
         let _ = writeln!(text, "# Found by rungs prove with seed {seed}. This is {side}.");
-        let _ = writeln!(text, "name = {}", string(&what));
-        let _ = writeln!(text, "program = {}", string(&named.program));
+        let _ = writeln!(text, "name = {}", quoted(&what));
+        let _ = writeln!(text, "program = {}", quoted(&named.program));
         if let Some(family) = &named.family {
-            let _ = writeln!(text, "family = {}", string(family));
+            let _ = writeln!(text, "family = {}", quoted(family));
         }
         let steps = steps(tape);
         let usual = steps.iter().map(|step| step.dt).find(|dt| *dt > 0).unwrap_or(10_000);
-        let _ = writeln!(text, "scan = {}", duration(usual));
+        let _ = writeln!(text, "scan = {}", duration(Duration::from_micros(usual.into())));
         let last = steps.len().saturating_sub(1);
         for (index, step) in steps.iter().enumerate() {
             let _ = writeln!(text, "\n[[step]]");
@@ -112,13 +115,13 @@ pub(crate) fn write<T>(
             if index == 0 {
                 set.extend(presets.iter().map(|preset| {
                     let address = if own { &preset.original } else { &preset.other };
-                    format!("{} = {}", string(address), literal(preset.kind, preset.value))
+                    format!("{} = {}", quoted(address), literal(preset.kind, preset.value))
                 }));
             }
             set.extend(step.sets.iter().filter_map(|(number, value)| {
                 let input = inputs.all.get(usize::from(*number))?;
                 let address = if own { &input.original } else { &input.other };
-                Some(format!("{} = {}", string(address), literal(input.kind, *value)))
+                Some(format!("{} = {}", quoted(address), literal(input.kind, *value)))
             }));
             // A key can stand once only: the last value is the one that counts.
             let mut unique: Vec<String> = Vec::new();
@@ -131,7 +134,7 @@ pub(crate) fn write<T>(
                 let _ = writeln!(text, "set = {{ {} }}", unique.join(", "));
             }
             if step.dt > 0 && step.dt != usual {
-                let _ = writeln!(text, "scan = {}", duration(step.dt));
+                let _ = writeln!(text, "scan = {}", duration(Duration::from_micros(step.dt.into())));
             }
             let _ = writeln!(text, "scans = {}", step.scans);
             if index == last {
@@ -147,7 +150,7 @@ fn expectation(text: &mut String, difference: &Difference, own: bool) {
     match difference {
         Difference::Value(it) => {
             let address = if own { &it.original } else { &it.other };
-            let _ = writeln!(text, "expect = {{ {} = {} }}", string(address), it.expected);
+            let _ = writeln!(text, "expect = {{ {} = {} }}", quoted(address), it.expected);
         }
         Difference::OriginalStopped(_, Some(code)) => {
             let _ = writeln!(text, "fault = \"{code:04X}\"");
@@ -157,32 +160,8 @@ fn expectation(text: &mut String, difference: &Difference, own: bool) {
             // A major fault fails by itself; the bit of a converted program is looked at.
             let bit = why.strip_suffix(" is on");
             if let (false, Some(bit)) = (own, bit) {
-                let _ = writeln!(text, "expect = {{ {} = 0 }}", string(bit));
+                let _ = writeln!(text, "expect = {{ {} = 0 }}", quoted(bit));
             }
         }
     }
-}
-
-fn duration(microseconds: u32) -> String {
-    match microseconds % 1000 {
-        0 => format!("\"{}ms\"", microseconds / 1000),
-        _ => format!("\"{microseconds}us\""),
-    }
-}
-
-/// A basic string of TOML.
-fn string(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            c if c.is_control() => {
-                let _ = write!(out, "\\u{:04X}", u32::from(c));
-            }
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
 }
