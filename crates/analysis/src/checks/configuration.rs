@@ -3,7 +3,7 @@
 use ladder::{Address, Family, FileType, ProgramFileKind, Value};
 
 use super::context::Context;
-use super::timers::report;
+use super::elements::{COUNTERS, TIMERS};
 use super::{Check, Found, Severity, rungs};
 use crate::calls::EntryKind;
 use crate::location::Location;
@@ -27,8 +27,8 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "The preset or time base a timer or counter box shows is not the one in its element. The processor works with the element; the \
             box is an older copy.",
         find: |context, found| {
-            for kind in [FileType::T, FileType::C] {
-                report(context, found, kind, Kind::DiffersFromData, |it| {
+            for elements in [TIMERS, COUNTERS] {
+                elements.report(context, found, Kind::DiffersFromData, |it| {
                     format!("the box of {} shows another preset or base than the data table", it.address)
                 });
             }

@@ -3,7 +3,7 @@
 use ladder::{Address, FileType};
 
 use super::context::Context;
-use super::timers::report;
+use super::elements::COUNTERS;
 use super::{Check, Found, Severity, rungs};
 use crate::timers::TimerFindingKind as Kind;
 
@@ -15,11 +15,7 @@ pub(super) const CHECKS: &[Check] = &[
         default_on: true,
         explanation: "Several instructions count with one element. CU and CD remember the state of one rung: shared, counts are lost or \
             doubled. One CTU with one CTD is an up/down counter and not meant here.",
-        find: |context, found| {
-            report(context, found, FileType::C, Kind::SeveralInstructions, |it| {
-                format!("{} is counted in {}", it.address, rungs(&it.locations))
-            })
-        },
+        find: |context, found| COUNTERS.shared(context, found),
     },
     Check {
         code: "CNT02",
@@ -37,9 +33,8 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "Nothing resets the counter or writes its ACC. It keeps its count through power loss and after its preset goes on to \
             the limit of a word.",
         find: |context, found| {
-            report(context, found, FileType::C, Kind::NeverReset, |it| {
-                format!("nothing in the program resets {}", it.address)
-            })
+            COUNTERS
+                .report(context, found, Kind::NeverReset, |it| format!("nothing in the program resets {}", it.address))
         },
     },
     Check {
@@ -57,11 +52,7 @@ pub(super) const CHECKS: &[Check] = &[
         severity: Severity::Warning,
         default_on: true,
         explanation: "The program examines a counter that no instruction counts and nothing else writes.",
-        find: |context, found| {
-            report(context, found, FileType::C, Kind::OnlyRead, |it| {
-                format!("{} is read in {} and nothing counts it", it.address, rungs(&it.locations))
-            })
-        },
+        find: |context, found| COUNTERS.only_read(context, found),
     },
     Check {
         code: "CNT06",
@@ -69,11 +60,7 @@ pub(super) const CHECKS: &[Check] = &[
         severity: Severity::Note,
         default_on: true,
         explanation: "The counter counts and no instruction looks at it. An operator terminal may.",
-        find: |context, found| {
-            report(context, found, FileType::C, Kind::NeverRead, |it| {
-                format!("nothing in the program reads {}", it.address)
-            })
-        },
+        find: |context, found| COUNTERS.never_read(context, found),
     },
     Check {
         code: "CNT07",
@@ -86,10 +73,7 @@ pub(super) const CHECKS: &[Check] = &[
 ];
 
 fn preset_never_set(context: &Context<'_>, found: &mut Found) {
-    for it in &context.timers.findings {
-        if it.kind != Kind::PresetNeverSet || it.address.file_type != FileType::C {
-            continue;
-        }
+    for it in COUNTERS.findings(context, Kind::PresetNeverSet) {
         let done = it.address.clone().with_bit(13);
         let Some(reads) = context.reads(&done) else { return };
         let contacts = reads.iter().filter(|read| *read.mnemonic == *"XIC" || *read.mnemonic == *"XIO");

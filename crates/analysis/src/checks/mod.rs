@@ -10,6 +10,7 @@ mod configuration;
 mod context;
 mod counters;
 mod documentation;
+mod elements;
 mod flow;
 mod io;
 mod logic;

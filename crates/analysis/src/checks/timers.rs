@@ -6,9 +6,10 @@ use instr::Category;
 use ladder::{Address, FileType, Operand, TimeBase, Value};
 
 use super::context::{Context, Step};
+use super::elements::{COUNTERS, TIMERS};
 use super::{Check, Found, Severity, rungs};
 use crate::location::Location;
-use crate::timers::{TimerFinding, TimerFindingKind as Kind};
+use crate::timers::TimerFindingKind as Kind;
 
 pub(super) const CHECKS: &[Check] = &[
     Check {
@@ -18,11 +19,7 @@ pub(super) const CHECKS: &[Check] = &[
         default_on: true,
         explanation: "Two timer instructions share one element. The one whose rung is false resets what the other one counts; \
             when both are true the element counts faster. Give each its own timer.",
-        find: |context, found| {
-            report(context, found, FileType::T, Kind::SeveralInstructions, |it| {
-                format!("{} is timed in {}", it.address, rungs(&it.locations))
-            })
-        },
+        find: |context, found| TIMERS.shared(context, found),
     },
     Check {
         code: "TIM02",
@@ -32,7 +29,7 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "The timer is done in the scan it starts. Perhaps the preset was never entered; an operator terminal may \
             write it while the machine runs.",
         find: |context, found| {
-            report(context, found, FileType::T, Kind::PresetNeverSet, |it| {
+            TIMERS.report(context, found, Kind::PresetNeverSet, |it| {
                 format!("{} has preset 0 and nothing in the program writes it", it.address)
             })
         },
@@ -44,7 +41,7 @@ pub(super) const CHECKS: &[Check] = &[
         default_on: true,
         explanation: "A timer that runs with PRE or ACC below 0 stops the processor with major fault 0034.",
         find: |context, found| {
-            report(context, found, FileType::T, Kind::Negative, |it| {
+            TIMERS.report(context, found, Kind::Negative, |it| {
                 format!("{} has a preset or accumulated value below 0: fault 0034 when it runs", it.address)
             })
         },
@@ -57,7 +54,7 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "RES clears the bits of a TOF while its rung may be false and timing: the manuals call the result \
             unpredictable and warn of machine motion. Let the rung of the TOF end the time instead.",
         find: |context, found| {
-            report(context, found, FileType::T, Kind::ResetOfOffDelay, |it| {
+            TIMERS.report(context, found, Kind::ResetOfOffDelay, |it| {
                 format!("{} is a TOF and is reset in {}", it.address, rungs(&it.locations))
             })
         },
@@ -70,9 +67,8 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "An RTO keeps its time while its rung is false and through power loss. Nothing resets it or writes its ACC: \
             it gets to its preset once and stays done.",
         find: |context, found| {
-            report(context, found, FileType::T, Kind::NeverReset, |it| {
-                format!("{} is an RTO that nothing resets", it.address)
-            })
+            TIMERS
+                .report(context, found, Kind::NeverReset, |it| format!("{} is an RTO that nothing resets", it.address))
         },
     },
     Check {
@@ -81,11 +77,7 @@ pub(super) const CHECKS: &[Check] = &[
         severity: Severity::Warning,
         default_on: true,
         explanation: "The program examines a timer that no instruction times and nothing else writes. Its bits never change.",
-        find: |context, found| {
-            report(context, found, FileType::T, Kind::OnlyRead, |it| {
-                format!("{} is read in {} and nothing times it", it.address, rungs(&it.locations))
-            })
-        },
+        find: |context, found| TIMERS.only_read(context, found),
     },
     Check {
         code: "TIM07",
@@ -94,11 +86,7 @@ pub(super) const CHECKS: &[Check] = &[
         default_on: true,
         explanation: "The timer runs and no instruction looks at its bits or its time. An operator terminal may; otherwise it is \
             left over.",
-        find: |context, found| {
-            report(context, found, FileType::T, Kind::NeverRead, |it| {
-                format!("nothing in the program reads {}", it.address)
-            })
-        },
+        find: |context, found| TIMERS.never_read(context, found),
     },
     Check {
         code: "TIM08",
@@ -163,27 +151,13 @@ pub(super) const CHECKS: &[Check] = &[
         explanation: "The data table holds a preset for an element nothing in the program refers to: left from logic that is gone, or \
             a spare.",
         find: |context, found| {
-            for kind in [FileType::T, FileType::C] {
-                report(context, found, kind, Kind::Unused, |it| format!("{} has a preset and is not used", it.address));
+            for elements in [TIMERS, COUNTERS] {
+                elements
+                    .report(context, found, Kind::Unused, |it| format!("{} has a preset and is not used", it.address));
             }
         },
     },
 ];
-
-/// Passes findings of the timer report on.
-pub(super) fn report(
-    context: &Context<'_>,
-    found: &mut Found,
-    file_type: FileType,
-    kind: Kind,
-    message: impl Fn(&TimerFinding) -> String,
-) {
-    for it in &context.timers.findings {
-        if it.kind == kind && it.address.file_type == file_type {
-            found.add(&it.locations, &it.address, message(it));
-        }
-    }
-}
 
 /// Time base of each timer whose base is known.
 fn bases(context: &Context<'_>) -> HashMap<Address, TimeBase> {
