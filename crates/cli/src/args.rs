@@ -92,6 +92,8 @@ pub enum Command {
     /// A web server for this computer alone: it listens on the loopback address, its pages load nothing from elsewhere,
     /// and the program does not leave the machine. Other addresses must be asked for and then need the token that is
     /// printed.
+    #[command(after_help = "Example: rungs serve conveyor.RSS --open\n         \
+        rungs serve conveyor.RSS --plant conveyor_plant.toml --port 8600")]
     Serve(ServeArguments),
     /// Runs scenarios (TOML) and reports every expectation that is not met
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\
