@@ -4,7 +4,8 @@ use std::path::Path;
 
 use analysis::diff::{ChangeKind, Difference, EditKind, LogicChange, RungChange, Side, compare};
 use ladder::{
-    Address, Branch, Element, FileType, Image, Instruction, Mnemonic, Operand, Place, Project, Rung, Series, Source,
+    Address, Branch, DataFile, Element, FileType, Image, Instruction, Mnemonic, Operand, Place, Project, Rung, Series,
+    Source,
 };
 use rss::Mode;
 
@@ -330,6 +331,19 @@ fn running_values_are_no_logic() {
     let found = difference(&old, &new);
     assert!(found.logic.is_empty() && found.documentation.is_empty() && found.configuration.is_empty(), "{found:?}");
     assert!(found.values.iter().any(|change| change.first == "N7:2" && change.last == "N7:5"));
+}
+
+/// A number kept free is no file, whatever size its elements would have.
+#[test]
+fn data_files_without_elements_are_nothing() {
+    let with = |file: Option<DataFile>| Image { data_files: file.into_iter().collect(), ..Image::default() };
+    let of = |file_type, elements| with(Some(DataFile::new(file_type, 9, elements)));
+    for (old, new) in [(with(None), of(FileType::N, 0)), (of(FileType::T, 0), with(None))] {
+        assert!(difference(&old, &new).is_empty());
+    }
+    let found = difference(&of(FileType::N, 0), &of(FileType::N, 2)).configuration;
+    let change = found.first().expect("a data file");
+    assert_eq!((change.old.as_deref(), change.new.as_deref()), (None, Some("2 elements of 1 words")));
 }
 
 fn ladder_of(text: &str) -> Image {

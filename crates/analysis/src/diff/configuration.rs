@@ -55,7 +55,9 @@ pub(super) fn compare(old: &Image, new: &Image, matched: &Matched) -> Vec<Change
     changes.extend(Named::new(settings(old), settings(new)).changes("channel", name));
     for (a, b) in data_files(old, new) {
         let shape = |file: &DataFile| format!("{} elements of {} words", file.elements, file.words_per_element);
-        let texts = (a.map(shape), b.map(shape));
+        // A file without elements holds nothing: a place kept free, which texts of the program do not list.
+        let held = |file: Option<&DataFile>| file.filter(|file| file.elements != 0).map(shape);
+        let texts = (held(a), held(b));
         let label = b.or(a).map(DataFile::label).unwrap_or_default();
         if texts.0 != texts.1 {
             changes.push(Change { what: "data file", name: label.clone(), old: texts.0, new: texts.1 });

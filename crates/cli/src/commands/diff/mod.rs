@@ -109,7 +109,7 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
         },
         pages,
     };
-    let mut out = std::io::BufWriter::new(std::io::stdout().lock());
+    let mut out = crate::output::standard(arguments.json);
     let outcome = match (&arguments.new, arguments.online) {
         (Some(_), true) => {
             return Err(Error::Use("--online compares the two images of one file: leave out the second".to_owned()));
@@ -169,7 +169,7 @@ fn pair(
     out: &mut dyn Write,
 ) -> Result<Outcome, Error> {
     let (a, b) = (opened(old, strict, printer, out)?, opened(new, strict, printer, out)?);
-    let ((a, a_is_text), (b, b_is_text)) = match (a, b) {
+    let ((mut a, a_is_text), (mut b, b_is_text)) = match (a, b) {
         (Some(Opened::Rslogix(a, a_is_text)), Some(Opened::Rslogix(b, b_is_text))) => ((a, a_is_text), (b, b_is_text)),
         (Some(Opened::Domore(a)), Some(Opened::Domore(b))) => {
             return do_more::compare((old, &a), (new, &b), how, printer, out);
@@ -182,6 +182,11 @@ fn pair(
             return Ok(Outcome::Unreadable);
         }
     };
+    match (a_is_text, b_is_text) {
+        (true, false) => text_side::fill_in(&mut a, &b),
+        (false, true) => text_side::fill_in(&mut b, &a),
+        _ => {}
+    }
     let (x, y) = (Program::main(old, &a), Program::main(new, &b));
     let mut difference = compare(
         Side { image: x.image, documentation: Some(x.documentation) },

@@ -1,6 +1,7 @@
 //! A project beside its text: what rung text cannot hold is no difference.
 
 use analysis::diff::{Change, Difference};
+use ladder::{IoRange, Project, Slot};
 use rss::Foreign;
 
 /// Documentation that rung text has no place for; comments of rungs and titles it holds.
@@ -21,6 +22,28 @@ pub(super) fn is_text(bytes: &[u8]) -> bool {
     // A project file is not read twice only to tell this.
     !bytes.starts_with(&[0xD0, 0xCF, 0x11, 0xE0])
         && matches!(rss::Project::read(bytes, rss::Mode::Permissive), Err(rss::Error::Foreign(Foreign::SlcText)))
+}
+
+/// Gives the controller's own I/O in `text` what rung text cannot say of it: text names the controller instead of its
+/// I/O, and counts words, not the bits of them that have terminals.
+pub(super) fn fill_in(text: &mut Project, project: &Project) {
+    let catalog = text.main.processor.catalog.clone();
+    if catalog.is_none() || catalog != project.main.processor.catalog {
+        return;
+    }
+    let range = |range: &IoRange| (range.first_word, range.words);
+    for slot in text.main.io.slots.iter_mut().filter(|slot| slot.number == 0) {
+        let same = |other: &&Slot| {
+            other.number == slot.number
+                && (range(&other.inputs), range(&other.outputs)) == (range(&slot.inputs), range(&slot.outputs))
+        };
+        let Some(known) = project.main.io.slots.iter().find(same) else { continue };
+        slot.inputs.bits = known.inputs.bits;
+        slot.outputs.bits = known.outputs.bits;
+        if slot.module.catalog == catalog {
+            slot.module = known.module.clone();
+        }
+    }
 }
 
 /// Takes out what the side that is a text lacks because texts lack it, and says how much that was.
