@@ -90,6 +90,11 @@ pub fn split(words: &[String]) -> (Vec<PathBuf>, Vec<String>) {
     (files, addresses)
 }
 
+/// Both paths lead to one file that is there.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
 /// A bar for work over many files: on a terminal only, and not when results are printed there too.
 pub fn progress(files: usize, results_on_terminal: bool) -> ProgressBar {
     if files < 2 || results_on_terminal || !std::io::stderr().is_terminal() {

@@ -80,6 +80,39 @@ impl<W: io::Write> io::Write for Printable<W> {
     }
 }
 
+/// Passes JSON on with the control characters that JSON itself allows in strings spelled out (`\u009b` begins a command
+/// in some terminals): the document stays the same.
+pub struct Json<W>(pub W);
+
+impl<W: io::Write> io::Write for Json<W> {
+    /// Formatted output arrives in whole characters; bytes that are none become replacement characters.
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let is_control = |c: char| matches!(c, '\u{7F}'..='\u{9F}');
+        if !bytes.contains(&0x7F) && !bytes.windows(2).any(|pair| matches!(pair, [0xC2, 0x80..=0x9F])) {
+            self.0.write_all(bytes)?;
+            return Ok(bytes.len());
+        }
+        for c in String::from_utf8_lossy(bytes).chars() {
+            if is_control(c) {
+                write!(self.0, "\\u{:04x}", u32::from(c))?;
+            } else {
+                write!(self.0, "{c}")?;
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// Standard output for a command that prints JSON or text for people.
+pub fn standard(json: bool) -> Box<dyn io::Write> {
+    let out = io::BufWriter::new(io::stdout().lock());
+    if json { Box::new(Json(out)) } else { Box::new(out) }
+}
+
 /// The text as [`Printable`] writes it; line ends stay.
 pub fn printable(text: &str) -> String {
     text.split('\n').map(render::clean).collect::<Vec<_>>().join("\n")
@@ -184,6 +217,16 @@ mod tests {
         table.write(&mut out, "").expect("a vector takes all");
         let text = String::from_utf8(out).expect("text");
         assert_eq!(text, "T4:0  A\\x1B[2J\\x9B1mB\nSymbol\nA\\x1B[2J\\x9B1mB\\x0A\n");
+    }
+
+    #[test]
+    fn json_says_the_same_without_commands() {
+        let value = serde_json::json!({"symbol": "a\u{9B}31m\u{7F}\u{1B}é漢"});
+        let mut out = Vec::new();
+        write!(Json(&mut out), "{value}").expect("a vector takes all");
+        let text = String::from_utf8(out).expect("text");
+        assert_eq!(text, "{\"symbol\":\"a\\u009b31m\\u007f\\u001bé漢\"}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).expect("JSON"), value);
     }
 
     #[test]

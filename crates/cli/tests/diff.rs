@@ -5,6 +5,10 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
+#[path = "../../../tests/src/corpus.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod corpus;
+
 const OLD: &str = "SOR XIC I:0/0 BST XIC B3:0/1 NXB XIO B3:0/2 BND OTE O:0/0 EOR
 SOR XIC B3:0/3 TON T4:0 0.01 100 0 EOR
 SOR XIC T4:0/DN CTU C5:0 10 0 EOR
@@ -102,6 +106,8 @@ fn exit_codes_say_equal_different_misused_unreadable() {
         (vec!["old.SLC", "--online"], 2),
         (vec!["old.SLC", "new.SLC", "--only", "colour"], 2),
         (vec!["old.SLC", "one"], 2),
+        // No project at all is no equality.
+        (vec!["one", "one"], 2),
         (vec!["old.SLC", "broken.RSS"], 3),
         (vec!["missing.RSS", "old.SLC"], 3),
     ] {
@@ -186,8 +192,33 @@ fn a_project_equals_the_text_made_of_it() {
     let mut export = Command::new(env!("CARGO_BIN_EXE_rungs"));
     let export = export.args(["export", "--to", "slc", "--force", "-o"]).arg(folder.join("text.SLC")).arg(&project);
     assert!(export.output().expect("the command starts").status.success());
-    let found = text(&diff(&folder, &[project.to_str().expect("a path"), "text.SLC", "--only", "logic,values"]), 0);
+    let found = text(&diff(&folder, &[project.to_str().expect("a path"), "text.SLC"]), 0);
     assert!(found.contains("were not compared"), "{found}");
+}
+
+/// Controllers of every family: I/O on board that text counts in words, files without elements that it does not list.
+#[test]
+fn real_projects_equal_the_text_made_of_them() {
+    let Some(root) = corpus::root() else { return };
+    let folder = folder("real_text", &[]);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let files = corpus::files(&root, ".rss").expect("the corpus can be listed");
+    let mut compared = 0;
+    for project in files.iter().step_by(9) {
+        let mut export = Command::new(env!("CARGO_BIN_EXE_rungs"));
+        let export = export.args(["export", "--to", "slc", "--force", "-o"]).arg(folder.join("text.SLC")).arg(project);
+        // What cannot be read has no text.
+        if export.output().expect("the command starts").status.success() {
+            let found = diff(&folder, &[project.to_str().expect("a path of text"), "text.SLC"]);
+            assert_eq!(found.status.code(), Some(0), "{}", text_of(&found));
+            compared += 1;
+        }
+    }
+    assert!(compared > files.len() / 10, "{compared}");
+}
+
+fn text_of(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
 #[test]
@@ -221,6 +252,11 @@ fn pages_show_a_difference_and_never_overwrite_what_is_compared() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
     assert_eq!(std::fs::read(folder.join("new.SLC")).expect("the file"), before);
+    // Nor anything else that is no page; a page is made anew.
+    std::fs::write(folder.join("other.RSS"), "mine").expect("a file");
+    assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "other.RSS"]).status.code(), Some(2));
+    assert_eq!(std::fs::read(folder.join("other.RSS")).expect("the file"), b"mine");
+    assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "out.html"]).status.code(), Some(1));
     assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "x.html", "--json"]).status.code(), Some(2));
     assert_eq!(diff(&folder, &["old.SLC", "missing.SLC", "--html", "x.html"]).status.code(), Some(3));
     assert!(!folder.join("x.html").exists());

@@ -88,6 +88,16 @@ fn nothing_is_overwritten_unasked() {
     assert_eq!(code(&["report", "motor/motor.RSS", "--out", shown(&out), "--force"]), Some(0));
     assert_ne!(read(&out), "mine");
     assert_eq!(code(&["report", "motor/motor.RSS", "--out", shown(&folder.join("r.doc"))]), Some(2));
+    // Not even --force replaces the project itself.
+    let project = folder.join("p.RSS");
+    std::fs::copy(examples().join("motor/motor.RSS"), &project).expect("a copy");
+    let before = std::fs::read(&project).expect("the project");
+    for command in [["report", "--to", "html", "--out"], ["export", "--to", "json", "-o"]] {
+        let mut arguments = command.to_vec();
+        arguments.extend([shown(&project), shown(&project), "--force"]);
+        assert_eq!(code(&arguments), Some(2), "{arguments:?}");
+    }
+    assert_eq!(std::fs::read(&project).expect("the project"), before);
     assert_eq!(code(&["report", "missing.RSS", "--out", shown(&folder.join("m.html"))]), Some(3));
 }
 

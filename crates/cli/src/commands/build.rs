@@ -7,6 +7,7 @@ use ladder::{Project, Severity};
 
 use super::{open, read_file};
 use crate::args::BuildArguments;
+use crate::files::is_same_file;
 use crate::output::{Error, Outcome, printable};
 
 pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
@@ -49,10 +50,6 @@ pub fn run(arguments: &BuildArguments) -> Result<Outcome, Error> {
 }
 
 /// Both names lead to one file, by whatever path.
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
 /// Prints what was noted; true if something is worse than a warning.
 fn report(path: &Path, diagnostics: &[ladder::Diagnostic]) -> bool {
     for diagnostic in diagnostics {

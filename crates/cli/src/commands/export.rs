@@ -11,6 +11,7 @@ use ladder::Severity;
 use super::drawings::{self, Rungs};
 use super::{Opened, domore, each_dialect};
 use crate::args::{ExportArguments, Form, Input, Table};
+use crate::files::is_same_file;
 use crate::output::{Error, Outcome, printable};
 
 pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
@@ -27,7 +28,7 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
             return Ok(Outcome::Done);
         };
         let target = if into_folder { target(output, &arguments.files, path, ending) } else { output.clone() };
-        let why = match write(&target, bytes, arguments.force, &mut written.borrow_mut()) {
+        let why = match write(&target, bytes, arguments, &mut written.borrow_mut()) {
             Ok(()) => {
                 writeln!(out, "{}", target.display())?;
                 return Ok(Outcome::Done);
@@ -77,12 +78,21 @@ pub fn run(arguments: &ExportArguments) -> Result<Outcome, Error> {
 }
 
 /// Writes a file unless something is there that was not to be overwritten.
-fn write(target: &Path, bytes: &[u8], force: bool, written: &mut HashSet<PathBuf>) -> Result<(), String> {
+fn write(
+    target: &Path,
+    bytes: &[u8],
+    arguments: &ExportArguments,
+    written: &mut HashSet<PathBuf>,
+) -> Result<(), String> {
+    if arguments.files.iter().any(|project| is_same_file(project, target)) {
+        // Not even --force lets an export replace the project it is of.
+        return Err(format!("{} is the project itself", target.display()));
+    }
     if written.contains(target) {
         // Not even --force lets one project of a run replace another.
         return Err(format!("{} was just written from another project", target.display()));
     }
-    if target.exists() && !force {
+    if target.exists() && !arguments.force {
         return Err(format!("{} exists; --force overwrites it", target.display()));
     }
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -122,7 +132,7 @@ fn put_drawings(
     for drawn in rungs.drawn() {
         let single = count == 1 && !many && !output.is_dir();
         let target = if single { output.clone() } else { folder.join(format!("{}.svg", drawn.stem)) };
-        write(&target, drawings::svg(&drawn).as_bytes(), arguments.force, written).map_err(Error::Use)?;
+        write(&target, drawings::svg(&drawn).as_bytes(), arguments, written).map_err(Error::Use)?;
         writeln!(out, "{}", target.display())?;
     }
     Ok(Outcome::Done)

@@ -38,11 +38,11 @@ pub fn run(arguments: &MergeArguments) -> Result<Outcome, Error> {
     merged.notes.iter().for_each(|note| say(note));
     if !merged.is_clean() {
         let text = conflicts(&merged, [base, ours, theirs].map(|side| &side.project.main));
-        let count = merged.count();
+        let count = super::history::plural(merged.count(), "conflict");
         let beside = beside(name);
         match write_new(&beside, &text) {
-            Ok(()) => say(&format!("{count} conflicts, see {}; ours stays", beside.display())),
-            Err(why) => say(&format!("{count} conflicts; ours stays. {}: {why}\n{text}", beside.display())),
+            Ok(()) => say(&format!("{count}, see {}; ours stays", beside.display())),
+            Err(why) => say(&format!("{count}; ours stays. {}: {why}\n{text}", beside.display())),
         }
         return Ok(Outcome::Finding);
     }

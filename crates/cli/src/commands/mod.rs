@@ -199,9 +199,8 @@ fn each_file(
     mut work: impl FnMut(&Path, bool, &mut dyn Write) -> Result<Result<Outcome, String>, Error>,
 ) -> Result<Outcome, Error> {
     let files = files::expand(paths, files::PROJECTS).map_err(Error::Use)?;
-    let stdout = std::io::stdout();
-    let bar = files::progress(files.len(), stdout.is_terminal());
-    let mut out = std::io::BufWriter::new(stdout.lock());
+    let bar = files::progress(files.len(), std::io::stdout().is_terminal());
+    let mut out = crate::output::standard(json);
     let mut outcome = Outcome::Done;
     let mut left = files.len();
     for path in files {

@@ -12,6 +12,7 @@ use report::{Document, DomoreSource, Options, Selection, Source};
 
 use super::{Opened, domore::OpenedDomore, each_dialect};
 use crate::args::{ImageChoice, Input, Medium, ReportArguments};
+use crate::files::is_same_file;
 use crate::output::{Error, Outcome, printable};
 
 /// Name of the list of several reports.
@@ -159,6 +160,10 @@ impl Pages<'_> {
     }
 
     fn write(&self, target: &Path, content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<(), String> {
+        // Not even --force lets a report replace the project it is of.
+        if self.arguments.files.iter().any(|project| is_same_file(project, target)) {
+            return Err(format!("{} is the project, and cannot be its report too", target.display()));
+        }
         if target.exists() && !self.arguments.force {
             return Err(format!("{} exists; --force overwrites it", target.display()));
         }

@@ -79,6 +79,11 @@ pub(super) fn compare(
     out: &mut dyn Write,
 ) -> Result<Outcome, Error> {
     let (left, right) = (list(old)?, list(new)?);
+    if left.is_empty() && right.is_empty() {
+        // A wrong path must not pass for two equal archives.
+        let (old, new) = (old.display(), new.display());
+        return Err(Error::Use(printable(&format!("{old}, {new}: no .RSS file in these folders"))));
+    }
     let mut outcome = Outcome::Done;
     for (folder, found) in [(old, &left), (new, &right)] {
         duplicates(folder, found, printer, out)?;

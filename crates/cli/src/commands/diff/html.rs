@@ -10,6 +10,7 @@ use report::diff::{Comparison, Entry, Shown};
 
 use super::folders::Paired;
 use super::{Both, Sections};
+use crate::files::is_same_file;
 use crate::output::{Error, printable};
 
 /// Characters of a page's name that come from the name of a file.
@@ -39,12 +40,15 @@ impl Pages {
     /// # Errors
     /// A target that is one of the compared files, or of the wrong sort.
     pub(super) fn new(target: &Path, compared: &[&Path], folder: bool) -> Result<Pages, Error> {
-        let same = |path: &&&Path| match (path.canonicalize(), target.canonicalize()) {
-            (Ok(a), Ok(b)) => a == b,
-            _ => false,
-        };
-        if let Some(path) = compared.iter().find(same) {
+        if let Some(path) = compared.iter().find(|path| is_same_file(path, target)) {
             return Err(Error::Use(printable(&format!("{}: is compared, and cannot be the page too", path.display()))));
+        }
+        let is_page =
+            target.extension().is_some_and(|it| it.eq_ignore_ascii_case("html") || it.eq_ignore_ascii_case("htm"));
+        if target.is_file() && !is_page {
+            // A page is made anew as often as one likes; a project of this name is not a page.
+            let why = "exists and is not named as a page: give a name that ends with .html";
+            return Err(Error::Use(printable(&format!("{}: {why}", target.display()))));
         }
         if folder {
             std::fs::create_dir_all(target).map_err(|error| failed(target, &error))?;

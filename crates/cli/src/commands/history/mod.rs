@@ -29,9 +29,8 @@ struct Archive {
 }
 
 pub fn run(arguments: &HistoryArguments) -> Result<Outcome, Error> {
-    let stdout = std::io::stdout();
-    let terminal = stdout.is_terminal();
-    let mut out = std::io::BufWriter::new(stdout.lock());
+    let terminal = std::io::stdout().is_terminal();
+    let mut out = crate::output::standard(arguments.json);
     let (archive, mut outcome) = read(arguments, terminal, &mut out)?;
     let found = machines(&archive.saves);
     let wanted = |machine: &Machine| {
@@ -404,7 +403,7 @@ fn told(step: Option<&Step>) -> (String, String) {
     (subject, body)
 }
 
-fn plural(number: usize, one: &str) -> String {
+pub(super) fn plural(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
