@@ -7,6 +7,7 @@
 pub mod book;
 pub mod browser;
 pub mod corpus;
+pub mod dice;
 pub mod drawing;
 pub mod printout;
 pub mod svg_boxes;

@@ -12,20 +12,8 @@ use std::time::Duration;
 
 use analysis::proof::{Goal, GoalKind, Options, Report, prove_slc};
 use ladder::{Address, Family, Image, Value};
-use random::Plan;
+use random::{Dice, Plan};
 use sim::{Machine, PowerFlow, Program, Trace};
-
-/// xorshift64*, as the random programs use it.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16) % limit
-    }
-}
 
 fn report(image: &Image, scans: u64) -> Report {
     prove_slc(image, image, None, &Options { scans, minimize: false, ..Options::default() })

@@ -174,7 +174,7 @@ fn programs_stay_equal() {
             continue;
         }
         let Ok(mut both) = migrate_support::Both::with(&project.main, migration) else { continue };
-        let mut dice = migrate_support::Dice(0x5EED | 1);
+        let mut dice = migrate_support::dice::Dice(0x5EED | 1);
         both.set_clocks();
         both.enter_run();
         for scan in 0..SCANS {

@@ -8,7 +8,7 @@ use convert::migrate::{self, Options, Verdict};
 use domore::choices::{Choice, Choices};
 use domore::engine;
 use ladder::{Address, DataFile, Family, FileType, Image, Value};
-use migrate_support::Dice;
+use migrate_support::dice::Dice;
 
 const WORDS: [i16; 18] = [0, 1, -1, 2, -2, 5, 10, -10, 99, 255, 256, 4095, 16383, 16384, 32766, 32767, -32767, -32768];
 const LONGS: [i32; 12] = [0, 1, -1, 10, -15, 32767, 32768, -32769, 100_000, i32::MAX, i32::MIN, i32::MIN + 1];

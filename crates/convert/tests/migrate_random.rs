@@ -2,32 +2,29 @@
 //! every word of data must agree after every scan, over stops and restarts, with uneven scan times.
 
 mod migrate_support;
+#[path = "../../sim/tests/random/shape.rs"]
+mod shape;
 
-use std::fmt::Write as _;
 use std::time::Duration;
 
 use convert::migrate::{Options, Verdict};
 use ladder::{Family, FileType};
-use migrate_support::{Both, Dice, image};
+use migrate_support::dice::Dice;
+use migrate_support::{Both, image};
 use proptest::prelude::*;
+use shape::Words;
 
 const FAMILIES: [Family; 5] =
     [Family::Slc501, Family::Slc503, Family::MicroLogix1000, Family::MicroLogix1100, Family::MicroLogix1400];
 
-struct Writer {
+struct Vocabulary {
     dice: Dice,
     family: Family,
-    text: String,
 }
 
-impl Writer {
-    fn put(&mut self, text: &str) {
-        self.text.push_str(text);
-        self.text.push(' ');
-    }
-
+impl Vocabulary {
     fn mx(&self) -> bool {
-        matches!(self.family, Family::MicroLogix1100 | Family::MicroLogix1400)
+        shape::is_mx(self.family)
     }
 
     fn bit(&mut self) -> String {
@@ -53,83 +50,33 @@ impl Writer {
             _ => format!("B3:{}/{}", self.dice.below(4), self.dice.below(4)),
         }
     }
+}
 
-    fn condition(&mut self) {
-        let text = match self.dice.below(10) {
+impl Words for Vocabulary {
+    // A person has to look at such a program: there would be nothing to compare.
+    const TND_IN_SUBROUTINES: bool = false;
+
+    fn dice(&mut self) -> &mut Dice {
+        &mut self.dice
+    }
+
+    fn condition(&mut self) -> String {
+        match self.dice.below(10) {
             0..=4 => format!("XIC {}", self.bit()),
             5..=7 => format!("XIO {}", self.bit()),
             _ if self.mx() => format!("ONS B3:{}/{}", 4 + self.dice.below(4), self.dice.below(16)),
             _ => format!("OSR B3:{}/{}", 4 + self.dice.below(4), self.dice.below(16)),
-        };
-        self.put(&text);
-    }
-
-    fn conditions(&mut self, depth: u32) {
-        for _ in 0..self.dice.below(3) {
-            if depth < 3 && self.dice.below(4) == 0 {
-                self.put("BST");
-                for leg in 0..1 + self.dice.below(3) {
-                    if leg > 0 {
-                        self.put("NXB");
-                    }
-                    self.conditions(depth + 1);
-                }
-                self.put("BND");
-            } else {
-                self.condition();
-            }
         }
     }
 
-    fn rung(&mut self, number: usize, count: usize, sub: bool) {
-        if number.is_multiple_of(4) && number > 0 {
-            self.put(&format!("LBL {}", number / 4));
-        }
-        self.conditions(0);
-        let next_label = number / 4 + 1;
-        match self.dice.below(24) {
-            0 if next_label * 4 < count => self.put(&format!("JMP {next_label}")),
-            1 if !sub => self.put("JSR 3"),
-            2 if sub => self.put("RET"),
-            3 => self.put("MCR"),
-            4 if !sub => self.put("TND"),
-            5..=8 => {
-                self.put("BST");
-                for leg in 0..2 + self.dice.below(2) {
-                    if leg > 0 {
-                        self.put("NXB");
-                    }
-                    self.conditions(2);
-                    self.output();
-                }
-                self.put("BND");
-                if self.dice.below(3) == 0 {
-                    self.conditions(1);
-                    self.output();
-                }
-            }
-            9 => {
-                self.output();
-                self.conditions(1);
-                self.output();
-            }
-            _ => self.output(),
-        }
-    }
-
-    fn output(&mut self) {
-        let text = match self.dice.below(20) {
+    fn output(&mut self) -> String {
+        match self.dice.below(20) {
             0..=4 => format!("OTE {}", self.output_bit()),
             5 => format!("OTL {}", self.output_bit()),
             6 => format!("OTU {}", self.bit().replace("S:1/15", "S:5/0")),
             7..=11 => {
                 let name = self.dice.pick(&["TON", "TON", "TOF", "RTO"]);
-                let bases: &[&str] = match self.family {
-                    Family::Slc501 => &["0.01"],
-                    _ if self.mx() => &["0.001", "0.01", "1.0"],
-                    _ => &["0.01", "1.0"],
-                };
-                format!("{name} T4:{} {} 10 0", self.dice.below(6), self.dice.pick(bases))
+                format!("{name} T4:{} {} 10 0", self.dice.below(6), self.dice.pick(shape::bases(self.family)))
             }
             12..=14 => format!("{} C5:{} 3 0", self.dice.pick(&["CTU", "CTD"]), self.dice.below(4)),
             15 => format!("RES {}", self.dice.pick(&["T4:0", "T4:3", "C5:1", "C5:2", "R6:0", "R6:1"])),
@@ -138,24 +85,14 @@ impl Writer {
                 format!("{name} B3:{}/{} {}", 4 + self.dice.below(4), self.dice.below(16), self.output_bit())
             }
             _ => format!("OTE {}", self.output_bit()),
-        };
-        self.put(&text);
+        }
     }
-}
-
-fn file(seeds: &[u64], family: Family, sub: bool) -> String {
-    let mut text = String::new();
-    for (number, seed) in seeds.iter().enumerate() {
-        let mut writer = Writer { dice: Dice(seed | 1), family, text: String::new() };
-        writer.rung(number, seeds.len(), sub);
-        let _ = writeln!(text, "{}", writer.text.trim());
-    }
-    text
 }
 
 /// Runs a program for a while: whether it was compared, or the first difference.
 fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Result<bool, String> {
-    let (main, sub) = (file(main, family, false), file(sub, family, true));
+    let words = |dice| Vocabulary { dice, family };
+    let (main, sub) = (shape::file(main, false, words), shape::file(sub, true, words));
     let mut image = image(family, &[(2, &main), (3, &sub)]);
     let mut dice = Dice(seed | 1);
     for data in &mut image.data_files {

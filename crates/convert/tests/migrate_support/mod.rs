@@ -2,6 +2,10 @@
 //! compares all data after every scan.
 #![allow(dead_code)] // every test file uses its own part
 
+#[path = "../../../../tests/src/dice.rs"]
+#[allow(unreachable_pub, reason = "one text for every crate's tests")]
+pub(crate) mod dice;
+
 use std::time::Duration;
 
 use convert::migrate::{self, Migration, Options};
@@ -241,24 +245,4 @@ pub(crate) fn pushes_behind_outputs(project: &domore::Project) -> Vec<String> {
             format!("{}: {}", block.name, code.join("; "))
         })
         .collect()
-}
-
-/// xorshift64*: the same numbers on every machine.
-pub(crate) struct Dice(pub(crate) u64);
-
-impl Dice {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
-    }
-
-    pub(crate) fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit.max(1)
-    }
-
-    pub(crate) fn pick<'a>(&mut self, list: &[&'a str]) -> &'a str {
-        list.get(self.below(list.len() as u64) as usize).copied().unwrap_or("")
-    }
 }

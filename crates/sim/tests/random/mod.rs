@@ -1,8 +1,14 @@
-//! Random programs: every rung comes from a number of its own, so that a failing program shrinks by
-//! leaving rungs out.
+//! Random programs of all that the plain interpreter knows, and data for them.
 
+#[path = "../../../../tests/src/dice.rs"]
+#[allow(dead_code, unreachable_pub, reason = "one text for every crate's tests, each of which uses a part")]
+mod dice;
+mod shape;
+
+pub(crate) use dice::Dice;
 use ladder::{DataFile, Family, FileType, Image};
 use proptest::prelude::*;
+use shape::Words;
 
 /// The data files of every random program: type, number, elements.
 pub(crate) const FILES: [(FileType, u16, u16); 9] = [
@@ -62,14 +68,7 @@ impl Plan {
     }
 
     fn file(&self, seeds: &[u64], sub: bool) -> String {
-        let mut text = String::new();
-        for (number, seed) in seeds.iter().enumerate() {
-            let mut writer = Writer { dice: Dice(seed | 1), family: self.family, text: String::new() };
-            writer.rung(number, seeds.len(), sub);
-            text.push_str(writer.text.trim());
-            text.push('\n');
-        }
-        text
+        shape::file(seeds, sub, |dice| Vocabulary { dice, family: self.family })
     }
 
     pub(crate) fn files(&self) -> Vec<(u16, String)> {
@@ -97,25 +96,7 @@ impl Plan {
     }
 }
 
-/// xorshift64*: the same numbers on every machine.
-pub(crate) struct Dice(pub(crate) u64);
-
 impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 16
-    }
-
-    pub(crate) fn any(&mut self) -> u16 {
-        self.next() as u16
-    }
-
-    fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
-    }
-
     /// A word that suits a place: mostly small, sometimes at the limits.
     pub(crate) fn word(&mut self, file_type: FileType, index: usize) -> u16 {
         match (file_type, index % 3) {
@@ -138,24 +119,14 @@ impl Dice {
     }
 }
 
-struct Writer {
+struct Vocabulary {
     dice: Dice,
     family: Family,
-    text: String,
 }
 
-impl Writer {
-    fn put(&mut self, text: &str) {
-        self.text.push_str(text);
-        self.text.push(' ');
-    }
-
-    fn pick<'a>(&mut self, list: &[&'a str]) -> &'a str {
-        list[self.dice.below(list.len() as u64) as usize]
-    }
-
+impl Vocabulary {
     fn mx(&self) -> bool {
-        matches!(self.family, Family::MicroLogix1100 | Family::MicroLogix1400)
+        shape::is_mx(self.family)
     }
 
     fn has_indirect(&self) -> bool {
@@ -167,9 +138,9 @@ impl Writer {
         match self.dice.below(14) {
             0 | 1 => format!("I:0/{bit}"),
             2 => format!("O:0/{bit}"),
-            3 => format!("T4:{}/{}", self.dice.below(4), self.pick(&["EN", "TT", "DN"])),
-            4 => format!("C5:{}/{}", self.dice.below(4), self.pick(&["CU", "CD", "DN", "OV", "UN"])),
-            5 => format!("R6:{}/{}", self.dice.below(4), self.pick(&["EN", "EU", "DN", "EM", "ER", "UL", "FD"])),
+            3 => format!("T4:{}/{}", self.dice.below(4), self.dice.pick(&["EN", "TT", "DN"])),
+            4 => format!("C5:{}/{}", self.dice.below(4), self.dice.pick(&["CU", "CD", "DN", "OV", "UN"])),
+            5 => format!("R6:{}/{}", self.dice.below(4), self.dice.pick(&["EN", "EU", "DN", "EM", "ER", "UL", "FD"])),
             6 => format!("N7:{}/{bit}", self.dice.below(24)),
             7 => format!("S:0/{}", self.dice.below(4)),
             8 => format!("T4:{}.ACC/{bit}", self.dice.below(4)),
@@ -192,8 +163,8 @@ impl Writer {
 
     fn word(&mut self) -> String {
         match self.dice.below(16) {
-            0 => format!("T4:{}.{}", self.dice.below(4), self.pick(&["ACC", "PRE"])),
-            1 => format!("C5:{}.{}", self.dice.below(4), self.pick(&["ACC", "PRE"])),
+            0 => format!("T4:{}.{}", self.dice.below(4), self.dice.pick(&["ACC", "PRE"])),
+            1 => format!("C5:{}.{}", self.dice.below(4), self.dice.pick(&["ACC", "PRE"])),
             2 => format!("R6:{}.POS", self.dice.below(4)),
             3 => format!("B3:{}", self.dice.below(8)),
             4 => "O:0".to_owned(),
@@ -201,7 +172,7 @@ impl Writer {
             6 if self.has_indirect() => format!("T4:[N7:{}].ACC", self.dice.below(4)),
             7 if !self.mx() && self.family != Family::Slc501 => format!("#N7:{}", self.dice.below(24)),
             8 if self.has_indirect() => "N[N7:0]:1".to_owned(),
-            9 => self.pick(&["S:13", "S:14", "S:24"]).to_owned(),
+            9 => self.dice.pick(&["S:13", "S:14", "S:24"]).to_owned(),
             10 if self.has_float() => format!("F8:{}", self.dice.below(6)),
             _ => format!("N7:{}", self.dice.below(24)),
         }
@@ -214,6 +185,7 @@ impl Writer {
     fn source(&mut self) -> String {
         match self.dice.below(5) {
             0 => self
+                .dice
                 .pick(&["0", "1", "-1", "2", "7", "100", "32767", "-32768", "0FF0h", "FFFFh"])
                 .replace("FFFFh", "0FFFFh"),
             1 => self.dice.below(20).to_string(),
@@ -249,9 +221,17 @@ impl Writer {
             }
         }
     }
+}
 
-    fn condition(&mut self) {
-        let text = match self.dice.below(12) {
+impl Words for Vocabulary {
+    const TND_IN_SUBROUTINES: bool = true;
+
+    fn dice(&mut self) -> &mut Dice {
+        &mut self.dice
+    }
+
+    fn condition(&mut self) -> String {
+        match self.dice.below(12) {
             0..=4 => format!("XIC {}", self.bit()),
             5..=7 => format!("XIO {}", self.bit()),
             8 => format!("LIM {} {} {}", self.source(), self.word(), self.source()),
@@ -259,90 +239,38 @@ impl Writer {
             10 if !self.mx() => format!("OSR B3:{}/{}", self.dice.below(8), self.dice.below(16)),
             10 => format!("ONS B3:{}/{}", self.dice.below(8), self.dice.below(16)),
             _ => {
-                let name = self.pick(&["EQU", "NEQ", "LES", "LEQ", "GRT", "GEQ"]);
+                let name = self.dice.pick(&["EQU", "NEQ", "LES", "LEQ", "GRT", "GEQ"]);
                 format!("{name} {} {}", self.word(), self.source())
             }
-        };
-        self.put(&text);
-    }
-
-    fn conditions(&mut self, depth: u32) {
-        for _ in 0..self.dice.below(3) {
-            if depth < 3 && self.dice.below(4) == 0 {
-                self.put("BST");
-                for leg in 0..1 + self.dice.below(3) {
-                    if leg > 0 {
-                        self.put("NXB");
-                    }
-                    self.conditions(depth + 1);
-                }
-                self.put("BND");
-            } else {
-                self.condition();
-            }
         }
     }
 
-    fn rung(&mut self, number: usize, count: usize, sub: bool) {
-        if number.is_multiple_of(4) && number > 0 {
-            self.put(&format!("LBL {}", number / 4));
-        }
-        self.conditions(0);
-        let flow = self.dice.below(24);
-        // Jumps go forward only: how instructions are counted is the engine's own business.
-        let next_label = number / 4 + 1;
-        match flow {
-            0 if next_label * 4 < count => self.put(&format!("JMP {next_label}")),
-            1 if !sub => self.put("JSR 3"),
-            2 if sub => self.put("RET"),
-            3 => self.put("MCR"),
-            4 => self.put("TND"),
-            5..=8 => {
-                self.put("BST");
-                for leg in 0..2 + self.dice.below(2) {
-                    if leg > 0 {
-                        self.put("NXB");
-                    }
-                    self.conditions(2);
-                    self.output();
-                }
-                self.put("BND");
-            }
-            _ => self.output(),
-        }
-    }
-
-    fn output(&mut self) {
-        let text = match self.dice.below(26) {
+    fn output(&mut self) -> String {
+        match self.dice.below(26) {
             0..=3 => format!("OTE {}", self.output_bit()),
             4 => format!("OTL {}", self.output_bit()),
             5 => format!("OTU {}", self.bit().replace("S:1/15", "S:5/0")),
             6..=8 => {
-                let name = self.pick(&["TON", "TOF", "RTO"]);
-                let bases: &[&str] = match self.family {
-                    Family::Slc501 => &["0.01"],
-                    _ if self.mx() => &["0.001", "0.01", "1.0"],
-                    _ => &["0.01", "1.0"],
-                };
-                let base = self.pick(bases);
+                let name = self.dice.pick(&["TON", "TOF", "RTO"]);
+                let base = self.dice.pick(shape::bases(self.family));
                 format!("{name} T4:{} {base} {} 0", self.dice.below(4), self.dice.below(30))
             }
             9 | 10 => {
-                let name = self.pick(&["CTU", "CTD"]);
+                let name = self.dice.pick(&["CTU", "CTD"]);
                 format!("{name} C5:{} {} 0", self.dice.below(4), self.dice.below(10))
             }
-            11 => format!("RES {}", self.pick(&["T4:0", "T4:3", "C5:1", "C5:2", "R6:0", "R6:1"])),
+            11 => format!("RES {}", self.dice.pick(&["T4:0", "T4:3", "C5:1", "C5:2", "R6:0", "R6:1"])),
             12 | 13 => format!("MOV {} {}", self.source(), self.place()),
             14 | 15 => {
-                let name = self.pick(&["ADD", "SUB", "MUL", "DIV"]);
+                let name = self.dice.pick(&["ADD", "SUB", "MUL", "DIV"]);
                 format!("{name} {} {} {}", self.word(), self.source(), self.place())
             }
             16 => {
-                let name = self.pick(&["AND", "OR", "XOR"]);
+                let name = self.dice.pick(&["AND", "OR", "XOR"]);
                 format!("{name} {} {} {}", self.integer_place(), self.integer(), self.integer_place())
             }
             17 => {
-                let name = self.pick(&["NEG", "SQR", "DCD", "NOT"]);
+                let name = self.dice.pick(&["NEG", "SQR", "DCD", "NOT"]);
                 format!("{name} {} {}", self.integer_place(), self.integer_place())
             }
             18 => format!("MVM {} {} {}", self.integer_place(), self.integer(), self.integer_place()),
@@ -351,32 +279,31 @@ impl Writer {
             21 => {
                 // The source never runs out before the destination does.
                 let (from, length) = (self.dice.below(12), self.dice.below(10));
-                let dest = self.pick(&["#N7:0", "#N7:2", "#N7:5", "#N7:20", "#B3:1", "#B3:6", "#T4:2"]);
+                let dest = self.dice.pick(&["#N7:0", "#N7:2", "#N7:5", "#N7:20", "#B3:1", "#B3:6", "#T4:2"]);
                 let length = if dest.starts_with("#T") { length % 4 } else { length };
                 format!("COP #N7:{from} {dest} {length}")
             }
             22 => {
-                let name = self.pick(&["BSL", "BSR"]);
+                let name = self.dice.pick(&["BSL", "BSR"]);
                 format!("{name} #B3:{} R6:0 {} {}", self.dice.below(6), self.bit(), self.dice.below(40))
             }
             23 => {
-                let name = self.pick(&["FFL", "LFL"]);
+                let name = self.dice.pick(&["FFL", "LFL"]);
                 format!("{name} {} #N7:12 R6:1 {} 0", self.integer(), 1 + self.dice.below(8))
             }
             24 => {
-                let name = self.pick(&["FFU", "LFU"]);
+                let name = self.dice.pick(&["FFU", "LFU"]);
                 format!("{name} #N7:12 {} R6:1 {} 0", self.integer_place(), 1 + self.dice.below(8))
             }
             _ => {
                 let length = self.dice.below(7);
                 // Written with `#` an operand would step along: another instruction than the interpreter has.
                 let (mask, place) = (self.integer().replace('#', ""), self.integer_place().replace('#', ""));
-                match self.pick(&["SQO", "SQC", "SQL"]) {
+                match self.dice.pick(&["SQO", "SQC", "SQL"]) {
                     "SQL" => format!("SQL #N7:15 {place} R6:3 {length} 0"),
                     name => format!("{name} #N7:16 {mask} {place} R6:2 {length} 0"),
                 }
             }
-        };
-        self.put(&text);
+        }
     }
 }
