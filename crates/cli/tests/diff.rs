@@ -113,6 +113,9 @@ fn exit_codes_say_equal_different_misused_unreadable() {
     ] {
         assert_eq!(diff(&folder, &arguments).status.code(), Some(code), "{arguments:?}");
     }
+    let output = diff(&folder, &["old.SLC", "--online", "--only", "documentation"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text_of(&output).contains("nothing to compare"), "{}", text_of(&output));
 }
 
 #[test]

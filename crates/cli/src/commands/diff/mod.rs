@@ -37,6 +37,10 @@ pub(super) struct Sections {
 }
 
 impl Sections {
+    fn only_documentation(self) -> bool {
+        self.documentation && !(self.logic || self.values || self.configuration)
+    }
+
     fn of(chosen: &[Section]) -> Sections {
         let has = |section| chosen.is_empty() || chosen.contains(&section);
         Sections {
@@ -116,6 +120,11 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
         }
         (None, false) => {
             return Err(Error::Use("expected a second file or folder, or --online for the online image".to_owned()));
+        }
+        (None, true) if printer.sections.only_documentation() => {
+            // Nothing would be compared, and that is not the same as equal.
+            let why = "--only documentation: an online image holds none, so that there is nothing to compare";
+            return Err(Error::Use(why.to_owned()));
         }
         (None, true) => online(&arguments.old, arguments.strict, &printer, &mut out)?,
         (Some(new), false) => match (arguments.old.is_dir(), new.is_dir()) {
