@@ -148,12 +148,7 @@ fn negative(context: &mut Context<'_>, instruction: &Instruction) {
 /// A true rung of TON and RTO behind what is particular to each: counts and sets EN, TT, DN. The power
 /// flow is the rung.
 fn time_on(t: &Timer, e: &mut Emitter) {
-    e.when(|e| {
-        e.and(&t.en);
-        e.and_not(&t.dn);
-        e.and_compare(Relation::Less, &t.acc, &t.pre);
-        t.count(e);
-    });
+    count_on(t, e);
     e.when(|e| {
         // Done lasts, once it is reached, while the timer stays enabled.
         e.when(|e| {
@@ -223,10 +218,7 @@ fn on_delay(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instructio
         t.clear(e);
     });
     time_on(&t, e);
-    e.when(|e| {
-        e.and_not(&t.dn);
-        e.hold(&t.tt);
-    });
+    show_timing(&t, e);
     e.set(&t.en);
     e.invert();
     e.reset(&t.en);
@@ -237,23 +229,33 @@ fn on_delay(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instructio
     Ok(())
 }
 
-fn retentive(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -> Converted {
-    negative(context, instruction);
-    let t = Timer::of(context, e, instruction)?;
+/// Counts what an enabled timer that is not done still has to time.
+fn count_on(t: &Timer, e: &mut Emitter) {
     e.when(|e| {
         e.and(&t.en);
         e.and_not(&t.dn);
         e.and_compare(Relation::Less, &t.acc, &t.pre);
         t.count(e);
     });
-    e.when(|e| {
-        e.and_compare(Relation::GreaterOrEqual, &t.acc, &t.pre);
-        e.set(&t.dn);
-    });
+}
+
+/// TT is on while a timer times whose rung is true.
+fn show_timing(t: &Timer, e: &mut Emitter) {
     e.when(|e| {
         e.and_not(&t.dn);
         e.hold(&t.tt);
     });
+}
+
+fn retentive(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -> Converted {
+    negative(context, instruction);
+    let t = Timer::of(context, e, instruction)?;
+    count_on(&t, e);
+    e.when(|e| {
+        e.and_compare(Relation::GreaterOrEqual, &t.acc, &t.pre);
+        e.set(&t.dn);
+    });
+    show_timing(&t, e);
     e.hold(&t.en);
     t.executed(e);
     Ok(())
