@@ -73,7 +73,7 @@ pub(super) fn align(a: &[u32], b: &[u32], work: &mut Work) -> Vec<(usize, usize)
         let shift = |(i, j): (usize, usize)| (start.0 + i, start.1 + j);
         let cells = left.len().saturating_mul(right.len());
         if cells <= MOST_CELLS && work.take(cells) {
-            pairs.extend(longest(left, right).into_iter().map(shift));
+            pairs.extend(longest_common(left, right).into_iter().map(shift));
             continue;
         }
         let anchors = if part.depth < MOST_DEPTH { unique_anchors(left, right) } else { Vec::new() };
@@ -94,8 +94,9 @@ pub(super) fn align(a: &[u32], b: &[u32], work: &mut Work) -> Vec<(usize, usize)
     pairs
 }
 
-/// A longest common subsequence by its table.
-fn longest(a: &[u32], b: &[u32]) -> Vec<(usize, usize)> {
+/// A longest common subsequence by its table, which has a cell for every item of one side with every one of the
+/// other: callers look at the lengths first. Pairs of places, ascending on both sides.
+pub fn longest_common<T: PartialEq>(a: &[T], b: &[T]) -> Vec<(usize, usize)> {
     let width = b.len() + 1;
     let mut table = vec![0_u32; (a.len() + 1) * width];
     let at = |table: &[u32], i: usize, j: usize| table.get(i * width + j).copied().unwrap_or(0);

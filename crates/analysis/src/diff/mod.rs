@@ -28,6 +28,7 @@ use std::fmt;
 
 use ladder::{Documentation, Image};
 
+pub use align::longest_common;
 pub use do_more::compare_domore;
 pub(crate) use equal::{Equality, matched};
 pub use inside::{Edit, EditKind, Word};

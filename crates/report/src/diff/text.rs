@@ -1,5 +1,7 @@
 //! Two texts side by side, word by word.
 
+use analysis::diff::longest_common;
+
 /// A stretch of one of two texts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stretch<'t> {
@@ -25,7 +27,8 @@ pub fn stretches<'t>(old: &'t str, new: &'t str) -> Vec<Stretch<'t>> {
     let end = a.iter().skip(start).rev().zip(b.iter().skip(start).rev()).take_while(|(x, y)| x == y).count();
     let (left, right) =
         (a.get(start..a.len() - end).unwrap_or_default(), b.get(start..b.len() - end).unwrap_or_default());
-    let pairs = if left.len().saturating_mul(right.len()) <= MOST_CELLS { longest(left, right) } else { Vec::new() };
+    let pairs =
+        if left.len().saturating_mul(right.len()) <= MOST_CELLS { longest_common(left, right) } else { Vec::new() };
     let said = |words: &[&str]| words.iter().filter(|word| !word.trim().is_empty()).count();
     let common =
         start + end + pairs.iter().filter(|(i, _)| left.get(*i).is_some_and(|word| !word.trim().is_empty())).count();
@@ -63,34 +66,6 @@ fn words(text: &str) -> Vec<&str> {
         rest = behind;
     }
     words
-}
-
-/// A longest common subsequence by its table.
-fn longest(a: &[&str], b: &[&str]) -> Vec<(usize, usize)> {
-    let width = b.len() + 1;
-    let mut table = vec![0_u32; (a.len() + 1) * width];
-    let at = |table: &[u32], i: usize, j: usize| table.get(i * width + j).copied().unwrap_or(0);
-    for (i, x) in a.iter().enumerate().rev() {
-        for (j, y) in b.iter().enumerate().rev() {
-            let best =
-                if x == y { at(&table, i + 1, j + 1) + 1 } else { at(&table, i + 1, j).max(at(&table, i, j + 1)) };
-            if let Some(cell) = table.get_mut(i * width + j) {
-                *cell = best;
-            }
-        }
-    }
-    let (mut i, mut j, mut pairs) = (0, 0, Vec::new());
-    while let (Some(x), Some(y)) = (a.get(i), b.get(j)) {
-        if x == y {
-            pairs.push((i, j));
-            (i, j) = (i + 1, j + 1);
-        } else if at(&table, i + 1, j) >= at(&table, i, j + 1) {
-            i += 1;
-        } else {
-            j += 1;
-        }
-    }
-    pairs
 }
 
 #[cfg(test)]
