@@ -162,6 +162,17 @@ pub enum ImageChoice {
     Autosave,
 }
 
+impl ImageChoice {
+    /// The image, if the project holds it.
+    pub fn of(self, project: &ladder::Project) -> Option<&ladder::Image> {
+        match self {
+            ImageChoice::Main => Some(&project.main),
+            ImageChoice::Online => project.online.as_ref(),
+            ImageChoice::Autosave => project.autosave.as_ref(),
+        }
+    }
+}
+
 #[derive(Args)]
 pub struct Input {
     /// Strict reading: the first deviation from the format is an error

@@ -7,9 +7,9 @@ use serde_json::json;
 use sim::scenario::Controller;
 use sim::{Machine, Options, Program, Unsupported};
 
+use super::open;
 use super::run::do_more_text;
 use super::test::reasons;
-use super::{ImageChoice, open};
 use crate::args::BenchArguments;
 use crate::do_more;
 use crate::output::{Error, Outcome, printable};
@@ -53,12 +53,7 @@ pub fn run(arguments: &BenchArguments) -> Result<Outcome, Error> {
             return Ok(Outcome::Unreadable);
         }
     };
-    let image = match arguments.image {
-        ImageChoice::Main => Some(&project.main),
-        ImageChoice::Online => project.online.as_ref(),
-        ImageChoice::Autosave => project.autosave.as_ref(),
-    };
-    let Some(image) = image else {
+    let Some(image) = arguments.image.of(&project) else {
         eprintln!("{name}: the project holds no such image");
         return Ok(Outcome::Finding);
     };

@@ -77,21 +77,13 @@ struct Opened {
 
 impl Opened {
     fn image(&self) -> &Image {
-        match self.choice {
-            ImageChoice::Main => &self.project.main,
-            // `each_project` has made sure that the image is there.
-            ImageChoice::Online => self.project.online.as_ref().unwrap_or(&self.project.main),
-            ImageChoice::Autosave => self.project.autosave.as_ref().unwrap_or(&self.project.main),
-        }
+        // `each_project` has made sure that the image is there.
+        self.choice.of(&self.project).unwrap_or(&self.project.main)
     }
 
     /// Says so and answers `true` when the project does not hold the image that was asked for.
     fn lacks_image(&self) -> bool {
-        let missing = match self.choice {
-            ImageChoice::Online => self.project.online.is_none(),
-            ImageChoice::Autosave => self.project.autosave.is_none(),
-            ImageChoice::Main => false,
-        };
+        let missing = self.choice.of(&self.project).is_none();
         if missing {
             eprintln!("{}: the project holds no such image", self.path.display());
         }

@@ -9,9 +9,9 @@ use ladder::{Address, FileType, Image, Project, Value, members_of};
 use sim::scenario::{Controller, Literal, parse_duration, value_for};
 use sim::{Machine, Options, Program, Recorder, Unsupported};
 
+use super::open;
 use super::test::reasons;
 use super::trace::{Column, Row, RungColumn, parts, writer};
-use super::{ImageChoice, open};
 use crate::args::RunArguments;
 use crate::do_more;
 use crate::output::{Error, Outcome};
@@ -36,12 +36,7 @@ pub fn run(arguments: &RunArguments) -> Result<Outcome, Error> {
             return Ok(Outcome::Unreadable);
         }
     };
-    let image = match arguments.image {
-        ImageChoice::Main => Some(&project.main),
-        ImageChoice::Online => project.online.as_ref(),
-        ImageChoice::Autosave => project.autosave.as_ref(),
-    };
-    let Some(image) = image else {
+    let Some(image) = arguments.image.of(&project) else {
         eprintln!("{}: the project holds no such image", arguments.program.display());
         return Ok(Outcome::Finding);
     };
