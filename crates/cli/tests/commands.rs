@@ -1,29 +1,11 @@
 //! The commands as a user runs them, on the example projects: exit codes, text and JSON.
 
+mod support;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
-
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
-}
-
-/// Runs `rungs` in the folder of the examples.
-fn rungs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rungs"))
-        .current_dir(examples())
-        .args(arguments)
-        .env_remove("NO_COLOR")
-        .output()
-        .expect("the command starts")
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = rungs(arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("text")
-}
+use support::among_examples::{examples, rungs, text};
 
 /// The documents of `--json`, one per line.
 fn json(arguments: &[&str]) -> Vec<Value> {

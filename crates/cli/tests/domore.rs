@@ -1,29 +1,13 @@
 //! The commands on a Do-more project, as a user runs them.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod support;
+
+use std::path::Path;
 
 use serde_json::Value;
+use support::among_examples::{examples, rungs, text};
 
 const FILE: &str = "filling_domore/filling.txt";
-
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
-}
-
-fn rungs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rungs"))
-        .current_dir(examples())
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
-
-fn text(arguments: &[&str]) -> String {
-    let output = rungs(arguments);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("text")
-}
 
 fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&text(arguments)).expect("one JSON document")

@@ -1,19 +1,10 @@
 //! `rungs migrate` as a user types it, on the example projects.
 
+mod support;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn rungs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rungs")).current_dir(root()).args(arguments).output().expect("the command runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("text")
-}
+use std::process::Output;
+use support::at_root::{rungs, text};
 
 /// An empty folder of this test's own.
 fn folder(name: &str) -> PathBuf {

@@ -1,19 +1,9 @@
 //! `rungs report` as a user runs it: one page, a folder of pages, sections, what is refused.
 
+mod support;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
-}
-
-fn rungs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rungs"))
-        .current_dir(examples())
-        .args(arguments)
-        .output()
-        .expect("the command starts")
-}
+use support::among_examples::{examples, rungs};
 
 fn code(arguments: &[&str]) -> Option<i32> {
     rungs(arguments).status.code()

@@ -1,19 +1,9 @@
 //! `rungs run` and `rungs test` as a user types them, on the example projects.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod support;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn rungs(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rungs")).current_dir(root()).args(arguments).output().expect("the command runs")
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8(bytes.to_vec()).expect("text")
-}
+use support::at_root::{rungs, text};
+use support::root;
 
 /// The motor example: the start button, with stop button and overload closed, gives three seconds of
 /// warning; then the contactor pulls in.
