@@ -56,9 +56,29 @@ fn backup_number(name: &str) -> Option<(&str, u32)> {
     (!stem.is_empty()).then_some((stem, number))
 }
 
-/// Without ` - Copy`, `_-_Copy`, `(2)` at its end.
+/// Without `Copy of ` and `Copy (2) of ` at its start, as older versions of Windows name copies.
+fn without_copy_of(name: &str) -> Option<&str> {
+    const BLANK: [char; 2] = [' ', '_'];
+    let word = |text: &str, word: &str| -> Option<usize> {
+        text.get(..word.len()).filter(|start| start.eq_ignore_ascii_case(word)).map(str::len)
+    };
+    let mut rest = name.get(word(name, "copy")?..)?.strip_prefix(BLANK)?;
+    if let Some((number, after)) = rest.strip_prefix('(').and_then(|inside| inside.split_once(')'))
+        && !number.is_empty()
+        && number.chars().all(|c| c.is_ascii_digit())
+    {
+        rest = after.strip_prefix(BLANK)?;
+    }
+    let rest = rest.get(word(rest, "of")?..)?.strip_prefix(BLANK)?.trim_start();
+    (!rest.is_empty()).then_some(rest)
+}
+
+/// Without `Copy of ` at its start, ` - Copy`, `_-_Copy`, `(2)` at its end.
 fn without_copy(name: &str) -> &str {
     let mut rest = name.trim_end();
+    while let Some(inner) = without_copy_of(rest) {
+        rest = inner;
+    }
     loop {
         let before = rest;
         if let Some(inside) = rest.strip_suffix(')')
@@ -137,6 +157,11 @@ mod tests {
             ("20230715_MicroLogix.RSS", "20230715_MICROLOGIX", None, Some("2023-07-15")),
             ("_BAK001.RSS", "_BAK001", None, None),
             ("copy.RSS", "COPY", None, None),
+            ("Copy of Pump 3.RSS", "PUMP_3", None, None),
+            ("COPY_OF_PUMP_3_BAK004.RSS", "PUMP_3", Some(4), None),
+            ("Copy (2) of Copy of Pump.RSS", "PUMP", None, None),
+            ("Copy of.RSS", "COPY_OF", None, None),
+            ("Copy office.RSS", "COPY_OFFICE", None, None),
             (".RSS", "_RSS", None, None),
             ("x/../y.RSS", "Y", None, None),
         ] {
