@@ -140,6 +140,8 @@ fn print(opened: &Opened, out: &mut dyn Write) -> Result<(), Error> {
     let (source, processor) = (&project.source, &image.processor);
     writeln!(out, "{}", opened.title())?;
     let mut line = |name: &str, value: &str| {
+        // What a project holds must not look like lines of its own.
+        let value = value.lines().collect::<Vec<_>>().join(" ");
         if value.is_empty() { Ok(()) } else { writeln!(out, "  {name:<18}{value}") }
     };
     line("Processor", &words::processor(processor))?;

@@ -199,6 +199,8 @@ impl Writer<'_> {
         let last = machine.saves.last().and_then(|entry| self.save(entry));
         let processor = last.map(|save| {
             let name = if save.processor_name.is_empty() { "without a name" } else { &save.processor_name };
+            // A name of several lines must not look like lines of this report.
+            let name = name.lines().collect::<Vec<_>>().join(" ");
             format!("processor {name}, {}", if save.catalog.is_empty() { "model not known" } else { &save.catalog })
         });
         writeln!(out, "\n{}", "=".repeat(78))?;
