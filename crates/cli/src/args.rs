@@ -796,7 +796,8 @@ pub struct MigrateArguments {
     /// An address map written before and edited: its choices are kept
     #[arg(long, value_name = "MAP")]
     pub map: Option<PathBuf>,
-    /// Leave to a person what needs text forms that were never seen to pass through Designer
+    /// Use no text form that is only inferred; rungs that need one are left to a person. Forms known from help
+    /// topics or a public generator of such texts remain, and the report lists them
     #[arg(long)]
     pub only_confirmed: bool,
     /// Run both programs side by side afterwards, see `rungs prove`

@@ -494,6 +494,41 @@ fn floats_agree_where_they_are_ordinary() {
 }
 
 #[test]
+fn a_float_division_by_zero_stores_the_same() {
+    let floats = "MOV N7:0 F8:0\nMOV N7:1 F8:1\n";
+    for (dividend, expected) in [(5, f32::INFINITY), (-3, f32::NEG_INFINITY), (0, f32::NAN)] {
+        let constant = format!("DIV {dividend}.0 F8:1 F8:2");
+        for divide in ["DIV N7:0 N7:1 F8:2", "DIV F8:0 F8:1 F8:2", "DIV F8:0 F8:1 F8:0 MOV F8:0 F8:2", &constant] {
+            let rungs = format!("{floats}{divide}\n{TRAP}");
+            let image = image(&Case { family: MX, wrap: false, rungs });
+            let migration = migrate::migrate(&image, &[], &Options::default()).expect("it migrates");
+            let program =
+                engine::Program::compile(&migration.project, &engine::Options::default()).expect("it compiles");
+            let mut domore = engine::Machine::new(program);
+            let mut slc =
+                sim::Machine::new(sim::Program::compile(&image, &sim::Options::default()).expect("it compiles"));
+            slc.enter_run();
+            domore.enter_run();
+            for scan in 0..2 {
+                for cell in cells(&migration, &domore).iter().filter(|cell| scan > 0 && cell.slc.to_string() == "N7:0")
+                {
+                    slc.set(&cell.slc, &Value::Word(dividend)).expect("a place");
+                    domore.set_number(cell.domore, domore::memory::Num::Int(dividend.into()));
+                }
+                slc.scan(std::time::Duration::from_millis(10));
+                domore.scan(std::time::Duration::from_millis(10));
+            }
+            let cells = cells(&migration, &domore);
+            let cell = cells.iter().find(|cell| cell.slc.to_string() == "F8:2").expect("a place");
+            let same = |value: f32| value == expected || value.is_nan() && expected.is_nan();
+            let (a, b) = (slc.get(&cell.slc), domore.value(cell.domore));
+            assert!(matches!(&a, Ok(Value::Float(a)) if same(*a)), "{divide}: {a:?}");
+            assert!(matches!(&b, engine::Value::Real(b) if same(*b)), "{divide}: {b:?}");
+        }
+    }
+}
+
+#[test]
 fn the_trap_may_wrap() {
     for rung in [
         "ADD N7:0 N7:1 N7:2",

@@ -409,12 +409,19 @@ fn float_quotient(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, t
     if to.width == Width::Float {
         cx.condition(
             Mark::Fault,
-            "a float division by zero sets the trap S:5/0 and stores infinity there; here the trap is set and a product \
-             beyond 3.4E38 is stored",
+            "a float division by zero sets the trap S:5/0 and stores infinity there, or what is no number for 0 / 0; here \
+             the trap is set and a product beyond 3.4E38 is stored, for 0 / 0 times zero",
         );
         // A product that overflows, whatever that is here: the nearest to infinity that can be written.
         let huge = Value::real(1e38).text().to_owned();
-        let sign = relation(a, "<", &if a.is_float() { Value::real(0.0) } else { Value::integer(0) });
+        let nothing = if a.is_float() { Value::real(0.0) } else { Value::integer(0) };
+        let sign = relation(a, "<", &nothing);
+        // Infinity times zero is no number, as 0 / 0 is.
+        let number = match a.constant {
+            Some(Number::Float(value)) if value != 0.0 => String::new(),
+            Some(value) if value.integer().is_some_and(|value| value != 0) => String::new(),
+            _ => format!(" * IF({}, 0.0, 1.0)", relation(a, "==", &nothing)),
+        };
         let zero = cx.scratch_bit(93);
         e.when(|e| {
             e.and_compare(Relation::Equal, &operand, none);
@@ -423,7 +430,7 @@ fn float_quotient(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, t
         e.when(|e| {
             e.and(&zero);
             e.set(&trap);
-            e.math(&super::store::destination(to), &format!("IF({sign}, -10.0, 10.0) * {huge}"));
+            e.math(&super::store::destination(to), &format!("IF({sign}, -10.0, 10.0) * {huge}{number}"));
         });
         e.when(|e| {
             e.and_not(&zero);
