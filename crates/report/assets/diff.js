@@ -1,24 +1,10 @@
-// Steps between changes, and the theme. The page is whole without it.
+// Steps between changes. The page is whole without it.
 (() => {
   "use strict";
   const root = document.documentElement;
   root.dataset.script = "";
   const one = (selector, from = document) => from.querySelector(selector);
-  const stored = (value) => {
-    // A page opened as a file may have no storage.
-    try {
-      if (value !== undefined) localStorage.setItem("rungs-theme", value);
-      return localStorage.getItem("rungs-theme");
-    } catch { return null; }
-  };
-  const theme = stored();
-  if (theme === "dark" || theme === "light") root.dataset.theme = theme;
-  const turn = () => {
-    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
-    stored(root.dataset.theme);
-  };
-  one("#theme").addEventListener("click", turn);
+  one("#theme").addEventListener("click", turnTheme);
 
   const where = one("#where");
   const stops = [...document.querySelectorAll(".change")];
@@ -55,7 +41,7 @@
   one("#back")?.addEventListener("click", () => go(at - 1));
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const act = { n: () => go(at + 1), p: () => go(at - 1), t: turn, u: fold }[event.key];
+    const act = { n: () => go(at + 1), p: () => go(at - 1), t: turnTheme, u: fold }[event.key];
     if (act) { act(); event.preventDefault(); }
   });
   tell();

@@ -8,22 +8,6 @@
   const main = one("main"), help = one("#help");
   const SHOWN = 100;
 
-  // ---- Theme -------------------------------------------------------------------------------------
-  const stored = (value) => {
-    // A page opened as a file may have no storage.
-    try {
-      if (value !== undefined) localStorage.setItem("rungs-theme", value);
-      return localStorage.getItem("rungs-theme");
-    } catch { return null; }
-  };
-  const theme = stored();
-  if (theme === "dark" || theme === "light") root.dataset.theme = theme;
-  const turn = () => {
-    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
-    stored(root.dataset.theme);
-  };
-
   // ---- Index -------------------------------------------------------------------------------------
   // Made from the page itself when it is first needed, so that nothing stands in the file twice.
   let index = null;
@@ -236,12 +220,12 @@
     const act = {
       "/": () => { box.focus(); box.select(); },
       "j": () => leap(1), "k": () => leap(-1),
-      "c": foldAll, "t": turn, "?": () => help.showModal(),
+      "c": foldAll, "t": turnTheme, "?": () => help.showModal(),
       "Escape": close,
     }[event.key];
     if (act) { act(); event.preventDefault(); }
   });
-  one("#theme").addEventListener("click", turn);
+  one("#theme").addEventListener("click", turnTheme);
   one("#fold").addEventListener("click", foldAll);
   one("#keys").addEventListener("click", () => help.showModal());
   if (location.hash) arrive();

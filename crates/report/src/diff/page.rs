@@ -12,7 +12,7 @@ use super::side::Side;
 use crate::page::{self, escape, relative};
 
 const STYLE: &str = include_str!("../../assets/diff.css");
-const SCRIPT: &str = include_str!("../../assets/diff.js");
+const SCRIPT: &str = concat!(include_str!("../../assets/theme.js"), include_str!("../../assets/diff.js"));
 
 /// Two programs and what differs.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@ use crate::page;
 use crate::page::escape;
 pub use index::{Page, index};
 
-const SCRIPT: &str = include_str!("../../assets/report.js");
+const SCRIPT: &str = concat!(include_str!("../../assets/theme.js"), include_str!("../../assets/report.js"));
 
 /// Writes a document as a page.
 ///
