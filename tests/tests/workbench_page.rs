@@ -163,7 +163,7 @@ fn a_force_is_never_out_of_sight() {
     browser.click("#view button[title='Force on']");
     browser.wait_for("document.querySelector('.banner.wrong')?.textContent.includes('N7:0')");
     // The refusal itself is logged by the browser as a request that failed.
-    assert!(browser.complaints().iter().all(|line| line.contains("422")));
+    assert!(browser.complaints().iter().all(|line| line.contains("409")));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! `cargo xtask` lists them. Each chore is an ordinary command line that could be typed by hand;
 //! this program only keeps the list in one place and the order right.
 
+mod api_tester;
 mod contact_sheet;
 
 use std::path::{Path, PathBuf};
@@ -38,7 +39,7 @@ const CHORES: &[Chore] = &[
     },
     Chore {
         name: "setup",
-        help: "install what tests need beside Rust (Chromium and its driver), where apt-get is",
+        help: "install what tests need beside Rust: Chromium and its driver, where apt-get is, and a tester of interfaces, where python3 is",
         run: |_| setup(),
     },
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
@@ -110,9 +111,14 @@ const NEEDED: [(&[&str], &[&str]); 2] = [
     (&["chromedriver"], &["chromium-driver", "chromium-chromedriver"]),
 ];
 
+fn setup() -> Outcome {
+    browser()?;
+    api_tester::setup()
+}
+
 /// Installs what is missing. Tests that need it fail plainly without it, or say that they are skipped with
 /// `RUNGS_NO_BROWSER=1`; so this is no failure where packages cannot be installed.
-fn setup() -> Outcome {
+fn browser() -> Outcome {
     let missing: Vec<_> = NEEDED.iter().filter(|(programs, _)| !programs.iter().any(|name| on_path(name))).collect();
     if missing.is_empty() || std::env::var_os("RUNGS_NO_BROWSER").is_some_and(|value| value == "1") {
         return Ok(());
@@ -122,14 +128,6 @@ fn setup() -> Outcome {
         println!("tests of pages need {}: install them, or set RUNGS_NO_BROWSER=1", names.join(" and "));
         return Ok(());
     }
-    let apt = |arguments: &[&str]| {
-        let root = Command::new("id").arg("-u").output().is_ok_and(|it| it.stdout.trim_ascii() == b"0");
-        let mut command = Command::new(if root { "apt-get" } else { "sudo" });
-        if !root {
-            command.args(["-n", "apt-get"]);
-        }
-        run(command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive"))
-    };
     println!("installing {}", names.join(", "));
     // Package lists can be old and still good enough.
     if let Err(why) = apt(&["update", "-q"]) {
@@ -142,6 +140,16 @@ fn setup() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Runs `apt-get` as whoever may.
+fn apt(arguments: &[&str]) -> Outcome {
+    let root = Command::new("id").arg("-u").output().is_ok_and(|it| it.stdout.trim_ascii() == b"0");
+    let mut command = Command::new(if root { "apt-get" } else { "sudo" });
+    if !root {
+        command.args(["-n", "apt-get"]);
+    }
+    run(command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive"))
 }
 
 fn on_path(name: &str) -> bool {

@@ -86,10 +86,14 @@ export function session(app, view) {
     const anchor = el("a", { href: URL.createObjectURL(new Blob([scenario.textContent], { type: "application/toml" })), download: "recording.toml" });
     anchor.click();
   }, { hidden: true });
+  /** One request takes a thousand addresses. */
+  const expect = async (addresses) => {
+    for (let from = 0; from < addresses.length; from += 1000) await post("/api/record", { do: "expect", addresses: addresses.slice(from, from + 1000) });
+  };
   const recording = el("div", { class: "row" },
     button("Begin recording", "Begins again with the data of the project", () => post("/api/record", { do: "start" }), { id: "record" }),
     button("Expect watched values here", "The scenario will expect what the watch list and the outputs hold now", () =>
-      post("/api/record", { do: "expect", addresses: [...new Set([...app.watched, ...app.project.points.filter((point) => !point.input).map((point) => point.address)])] }), { id: "expect" }),
+      expect([...new Set([...app.watched, ...app.project.points.filter((point) => !point.input).map((point) => point.address)])]), { id: "expect" }),
     field("Name", title),
     button("End recording", "Gives the scenario", async () => {
       const done = await post("/api/record", { do: "stop", name: title.value.trim() || "recorded" });

@@ -187,16 +187,19 @@ async fn what_makes_no_sense_is_refused_with_a_reason() {
         ("/api/control", json!({"do": "scan-time", "ms": -5}), 422),
         ("/api/control", json!({"do": "scan-time", "ms": 1e300}), 422),
         ("/api/control", json!({"do": "mode", "mode": "remote"}), 422),
-        ("/api/control", json!({"do": "resume", "name": "none"}), 422),
+        ("/api/control", json!({"do": "resume", "name": "none"}), 409),
         ("/api/control", json!({"do": "keep", "name": "x".repeat(300)}), 422),
-        ("/api/control", json!({"do": "plant", "text": "[[tank]]"}), 422),
-        ("/api/control", json!({"do": "until", "address": "N99:0", "relation": "=", "value": 0}), 422),
-        ("/api/write", json!({"address": "N7:0", "value": 70000}), 422),
-        ("/api/write", json!({"address": "N7:0", "value": "five"}), 422),
+        ("/api/control", json!({"do": "plant", "text": "[[tank]]"}), 409),
+        ("/api/control", json!({"do": "until", "address": "N99:0", "relation": "=", "value": 0}), 409),
+        ("/api/write", json!({"address": "N7:0", "value": 70000}), 409),
+        ("/api/write", json!({"address": "N7:0", "value": "five"}), 409),
         ("/api/write", json!({"address": "", "value": 1}), 422),
-        ("/api/force", json!({"address": "N7:0", "state": true}), 422),
-        ("/api/record", json!({"do": "stop", "name": "x"}), 422),
-        ("/api/trend", json!({"addresses": ["T4:0"]}), 422),
+        ("/api/force", json!({"address": "N7:0", "state": true}), 409),
+        ("/api/record", json!({"do": "stop", "name": "x"}), 409),
+        ("/api/trend", json!({"addresses": ["T4:0"]}), 409),
+        ("/api/control", json!({"do": "pause", "speed": 1}), 422),
+        ("/api/trend", json!({"addresses": vec!["N7:0"; 33]}), 422),
+        ("/api/write", json!({"address": "N".repeat(201), "value": 1}), 422),
         ("/api/nothing", json!({}), 404),
         ("/api/state", json!({}), 405),
     ] {
@@ -211,12 +214,34 @@ async fn what_makes_no_sense_is_refused_with_a_reason() {
         "/api/routines/x/rungs",
         "/assets/..%2Fmain.js",
         "/api/search?q=",
+        "/api/routines/2/rungs?count=201",
+        "/api/routines/2/rungs?from=0.5",
+        "/api/routines/2/heights?width=59",
+        "/api/routines/9/heights",
     ] {
         let (status, answer) = get(at, path).await;
         assert!((400..500).contains(&status) && answer["error"].is_string(), "{path}: {status} {answer}");
     }
     let long = json!({"do": "plant", "text": "#".repeat(1 << 20)});
     assert_eq!(post(at, "/api/control", long).await.0, 413);
+}
+
+/// What stands in the description is what is there, and nothing else.
+#[tokio::test]
+async fn routes_take_the_methods_that_are_described() {
+    let at = serve(Access::default()).await;
+    let (_, described) = get(at, "/api/openapi.json").await;
+    let paths = described["paths"].as_object().expect("paths");
+    assert!(paths.len() >= 16, "{}", paths.len());
+    for (path, operations) in paths {
+        let real = path.replace("{routine}", "2").replace("{file}", "N7").replace("{name}", "main.js");
+        for method in ["GET", "POST", "PUT", "PATCH", "DELETE", "TRACE"] {
+            let described = operations.get(method.to_lowercase()).is_some();
+            let (status, head, _) = ask(at, &format!("{method} {real}"), &format!("Host: {at}\r\n"), "").await;
+            assert_eq!(status != 405, described, "{method} {path}: {status}");
+            assert_eq!(head.contains("\r\nallow: "), status == 405, "{method} {path}: {head}");
+        }
+    }
 }
 
 #[tokio::test]

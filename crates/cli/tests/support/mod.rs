@@ -51,3 +51,62 @@ pub(crate) mod at_root {
         String::from_utf8(bytes.to_vec()).expect("text")
     }
 }
+
+/// `rungs serve` as a process of its own; it ends with the value.
+pub(crate) mod served {
+    use std::io::{BufRead, BufReader};
+    use std::net::{Ipv4Addr, SocketAddr};
+    use std::path::Path;
+    use std::process::{Child, Command, Stdio};
+
+    pub(crate) struct Server {
+        child: Child,
+        /// Where it listens, as somebody on this machine reaches it.
+        pub(crate) at: SocketAddr,
+        /// The token it wants, if it wants one.
+        pub(crate) token: Option<String>,
+    }
+
+    impl Server {
+        /// Serves a program on a port the system chooses unless the arguments name one.
+        pub(crate) fn start(program: &Path, arguments: &[&str]) -> Server {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_rungs"));
+            command.arg("serve").arg(program);
+            if !arguments.contains(&"--port") {
+                command.args(["--port", "0"]);
+            }
+            let child = command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+            let mut child = child.expect("the command starts");
+            let mut line = String::new();
+            let out = child.stdout.take().expect("its output");
+            BufReader::new(out).read_line(&mut line).expect("the address of the page");
+            let rest = line.trim().strip_prefix("http://").unwrap_or_else(|| panic!("no address: {line}"));
+            let (at, rest) = rest.split_once('/').expect("a page");
+            let token = rest.strip_prefix("?token=").map(str::to_owned);
+            let bound: SocketAddr = at.parse().expect("an address");
+            let ip = if bound.ip().is_unspecified() { Ipv4Addr::LOCALHOST.into() } else { bound.ip() };
+            Server { child, at: SocketAddr::new(ip, bound.port()), token }
+        }
+
+        /// Number of the process.
+        pub(crate) fn id(&self) -> u32 {
+            self.child.id()
+        }
+
+        /// Ends it at once, without a word: `kill -9`.
+        pub(crate) fn kill(mut self) {
+            self.end();
+        }
+
+        fn end(&mut self) {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+
+    impl Drop for Server {
+        fn drop(&mut self) {
+            self.end();
+        }
+    }
+}

@@ -9,16 +9,26 @@ use serde::{Deserialize, Serialize};
 use sim::scenario::Literal;
 
 use super::Served;
+use super::asked::{Address, List, Name, SAFE, Whole};
 use super::problem::Problem;
 use crate::engine::{Engine, MOST_SCANS, Pace};
 use crate::plant::Plant;
-use crate::workbench::{Change, Condition, ModeChange, Recorded, Relation};
+use crate::workbench::{Change, Condition, ModeChange, Recorded, Relation, trend};
 
 type Asked<T> = Result<Json<T>, JsonRejection>;
 type Answer<T> = Result<Json<T>, Problem>;
 
-/// Longest text of a name, an address or a value.
+/// Longest text of a value, characters.
 const TEXT: usize = 200;
+
+/// Longest text of a plant file, characters.
+const PLANT: usize = 200_000;
+
+/// Scans one request may run: some seconds.
+const SCANS: u64 = 10_000;
+
+/// Addresses of one expectation.
+const EXPECTED: usize = 1000;
 
 /// What can be done with the run.
 #[derive(Debug, Deserialize)]
@@ -27,29 +37,56 @@ pub(super) enum Control {
     /// Scans run in real time, `speed` times as fast; without a speed as fast as they can.
     Run { speed: Option<f64> },
     /// No scan runs any more.
-    Pause,
+    Pause {},
     /// So many scans, then a pause.
-    Scan { count: u32 },
+    Scan { count: Whole<0, SCANS> },
     /// As fast as they can, until a condition holds.
-    Until { address: String, relation: String, value: f64, scans: Option<u64> },
+    Until { address: Address, relation: Comparison, value: f64, scans: Option<Whole<0, SAFE>> },
     /// Back by so many scans, then a pause.
-    Back { count: u64 },
+    Back { count: Whole<0, SAFE> },
     /// Begins again with the data of the project.
-    Restart,
+    Restart {},
     /// The key switch.
-    Mode { mode: String },
+    Mode { mode: Key },
     /// Simulated milliseconds from one scan to the next.
     ScanTime { ms: f64 },
     /// Keeps the state under a name.
-    Keep { name: String },
+    Keep { name: Name },
     /// Goes on from a state that was kept.
-    Resume { name: String },
+    Resume { name: Name },
     /// Enables or disables all forces.
     Forces { enabled: bool },
     /// Removes all forces.
-    ClearForces,
+    ClearForces {},
     /// Wires the controller to a plant, given as the text of a plant file, or to none.
     Plant { text: Option<String> },
+}
+
+/// Positions of the key switch.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Key {
+    Program,
+    Run,
+    Test,
+    PowerCycle,
+}
+
+/// How two numbers are compared, as the page spells it.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) enum Comparison {
+    #[serde(rename = "=")]
+    Equal,
+    #[serde(rename = "<>")]
+    NotEqual,
+    #[serde(rename = "<")]
+    Less,
+    #[serde(rename = "<=")]
+    AtMost,
+    #[serde(rename = ">")]
+    Greater,
+    #[serde(rename = ">=")]
+    AtLeast,
 }
 
 /// What was done.
@@ -59,56 +96,60 @@ pub(super) struct Done {
     scans: u64,
 }
 
-/// Scans one request may run: some seconds.
-const SCANS: u32 = 10_000;
-
 pub(super) async fn control(State(served): State<Served>, asked: Asked<Control>) -> Answer<Done> {
     let Json(control) = asked?;
-    if let Control::Scan { count } = control
-        && count > SCANS
-    {
-        return Err(Problem::refused(format!("expected at most {SCANS} scans in one request, found {count}")));
-    }
+    fits(&control).map_err(Problem::unfit)?;
     let done = served.engine.ask(move |engine| carry_out(engine, control)).await?;
     done.map(|scans| Json(Done { scans })).map_err(Problem::refused)
+}
+
+/// What types do not say about a request.
+fn fits(control: &Control) -> Result<(), String> {
+    match control {
+        Control::Run { speed: Some(speed) } if !(0.01..=1000.0).contains(speed) => {
+            Err(format!("expected a speed from 0.01 to 1000, found {speed}"))
+        }
+        Control::ScanTime { ms } if !(0.1..=10_000.0).contains(ms) => {
+            Err(format!("expected from 0.1 to 10000 milliseconds from one scan to the next, found {ms}"))
+        }
+        Control::Plant { text: Some(text) } if text.chars().nth(PLANT).is_some() => {
+            Err(format!("expected a plant file of at most {PLANT} characters, found {}", text.chars().count()))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn carry_out(engine: &mut Engine, control: Control) -> Result<u64, String> {
     match control {
         Control::Run { speed: None } => start(engine, Pace::Fast)?,
-        Control::Run { speed: Some(speed) } if (0.01..=1000.0).contains(&speed) => {
-            start(engine, Pace::RealTime(speed))?
-        }
-        Control::Run { speed: Some(speed) } => {
-            return Err(format!("expected a speed from 0.01 to 1000, found {speed}"));
-        }
-        Control::Pause => engine.set_pace(Pace::Paused),
+        Control::Run { speed: Some(speed) } => start(engine, Pace::RealTime(speed))?,
+        Control::Pause {} => engine.set_pace(Pace::Paused),
         Control::Scan { count } => {
             start(engine, Pace::Paused)?;
             // The last two are watched, so that what changed between them shows.
+            let count = count.get();
             return Ok((0..count).take_while(|number| engine.bench.scan(number + 2 >= count)).count() as u64);
         }
         Control::Until { address, relation, value, scans } => {
             start(engine, Pace::Paused)?;
-            let relation = relation_of(&relation)?;
-            let scans = scans.unwrap_or(MOST_SCANS).min(MOST_SCANS);
-            engine.run_until(Condition { address, relation, value }, scans)?;
+            let scans = scans.map_or(MOST_SCANS, Whole::get).min(MOST_SCANS);
+            let condition = Condition { address: address.into_string(), relation: relation.into(), value };
+            engine.run_until(condition, scans)?;
         }
         Control::Back { count } => {
             engine.set_pace(Pace::Paused);
-            return engine.bench.back(count);
+            return engine.bench.back(count.get());
         }
-        Control::Restart => {
+        Control::Restart {} => {
             engine.set_pace(Pace::Paused);
             engine.bench.restart()?;
         }
         Control::Mode { mode } => {
-            let mode = match mode.as_str() {
-                "program" => ModeChange::Program,
-                "run" => ModeChange::Run,
-                "test" => ModeChange::Test,
-                "power-cycle" => ModeChange::PowerCycle,
-                other => return Err(format!("expected program, run, test or power-cycle, found `{other}`")),
+            let mode = match mode {
+                Key::Program => ModeChange::Program,
+                Key::Run => ModeChange::Run,
+                Key::Test => ModeChange::Test,
+                Key::PowerCycle => ModeChange::PowerCycle,
             };
             if mode == ModeChange::Program {
                 engine.set_pace(Pace::Paused);
@@ -119,13 +160,13 @@ fn carry_out(engine: &mut Engine, control: Control) -> Result<u64, String> {
             let time = Duration::try_from_secs_f64(ms / 1000.0).map_err(|why| why.to_string())?;
             engine.bench.set_scan_time(time)?;
         }
-        Control::Keep { name } => engine.bench.keep(short(&name)?)?,
+        Control::Keep { name } => engine.bench.keep(name.as_str())?,
         Control::Resume { name } => {
             engine.set_pace(Pace::Paused);
-            engine.bench.resume(&name)?;
+            engine.bench.resume(name.as_str())?;
         }
         Control::Forces { enabled } => engine.bench.change(Change::EnableForces(enabled))?,
-        Control::ClearForces => {
+        Control::ClearForces {} => {
             let forced: Vec<String> = engine.bench.state().forces.keys().cloned().collect();
             for address in forced {
                 engine.bench.change(Change::Force { address, state: None })?;
@@ -148,22 +189,16 @@ fn start(engine: &mut Engine, pace: Pace) -> Result<(), String> {
     Ok(())
 }
 
-fn relation_of(text: &str) -> Result<Relation, String> {
-    Ok(match text {
-        "=" => Relation::Equal,
-        "<>" => Relation::NotEqual,
-        "<" => Relation::Less,
-        "<=" => Relation::AtMost,
-        ">" => Relation::Greater,
-        ">=" => Relation::AtLeast,
-        other => return Err(format!("expected one of = <> < <= > >=, found `{other}`")),
-    })
-}
-
-fn short(text: &str) -> Result<&str, String> {
-    match text.chars().count() {
-        1..=TEXT => Ok(text),
-        count => Err(format!("expected a text of 1 to {TEXT} characters, found {count}")),
+impl From<Comparison> for Relation {
+    fn from(comparison: Comparison) -> Relation {
+        match comparison {
+            Comparison::Equal => Relation::Equal,
+            Comparison::NotEqual => Relation::NotEqual,
+            Comparison::Less => Relation::Less,
+            Comparison::AtMost => Relation::AtMost,
+            Comparison::Greater => Relation::Greater,
+            Comparison::AtLeast => Relation::AtLeast,
+        }
     }
 }
 
@@ -171,7 +206,7 @@ fn short(text: &str) -> Result<&str, String> {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Write {
-    address: String,
+    address: Address,
     value: Given,
 }
 
@@ -191,9 +226,12 @@ pub(super) async fn write(State(served): State<Served>, asked: Asked<Write>) -> 
         Given::Bit(on) => Literal::Integer(on.into()),
         Given::Integer(number) => Literal::Integer(number),
         Given::Float(number) => Literal::Float(number),
+        Given::Text(text) if text.chars().nth(TEXT).is_some() => {
+            return Err(Problem::unfit(format!("expected a text of at most {TEXT} characters as a value")));
+        }
         Given::Text(text) => Literal::Text(text),
     };
-    let done = served.engine.ask(move |engine| engine.bench.write(&address, &literal)).await?;
+    let done = served.engine.ask(move |engine| engine.bench.write(address.as_str(), &literal)).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
 }
 
@@ -201,13 +239,14 @@ pub(super) async fn write(State(served): State<Served>, asked: Asked<Write>) -> 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Force {
-    address: String,
+    address: Address,
     state: Option<bool>,
 }
 
 pub(super) async fn force(State(served): State<Served>, asked: Asked<Force>) -> Answer<Done> {
     let Json(Force { address, state }) = asked?;
-    let done = served.engine.ask(move |engine| engine.bench.change(Change::Force { address, state })).await?;
+    let change = Change::Force { address: address.into_string(), state };
+    let done = served.engine.ask(move |engine| engine.bench.change(change)).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
 }
 
@@ -216,11 +255,11 @@ pub(super) async fn force(State(served): State<Served>, asked: Asked<Force>) -> 
 #[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
 pub(super) enum Record {
     /// Begins, from the data of the project.
-    Start,
+    Start {},
     /// The values these addresses have now are what the scenario expects here.
-    Expect { addresses: Vec<String> },
+    Expect { addresses: List<Address, EXPECTED> },
     /// Ends.
-    Stop { name: String },
+    Stop { name: Name },
 }
 
 /// A recording.
@@ -238,18 +277,18 @@ pub(super) async fn record(State(served): State<Served>, asked: Asked<Record>) -
     let (program, family) = (served.program.file_name().to_owned(), served.program.scenario_family());
     let done = served.engine.ask(move |engine| -> Result<Recording, String> {
         match record {
-            Record::Start => {
+            Record::Start {} => {
                 engine.set_pace(Pace::Paused);
                 engine.bench.record()?;
                 Ok(Recording::default())
             }
             Record::Expect { addresses } => {
-                engine.bench.expect(&addresses)?;
+                engine.bench.expect(&texts(addresses))?;
                 Ok(Recording::default())
             }
             Record::Stop { name } => {
                 engine.set_pace(Pace::Paused);
-                let recorded = Recorded { name: short(&name)?.to_owned(), program, family };
+                let recorded = Recorded { name: name.into_string(), program, family };
                 let (scenario, problems) = engine.bench.recorded(&recorded)?;
                 Ok(Recording { scenario: Some(scenario), problems })
             }
@@ -262,11 +301,15 @@ pub(super) async fn record(State(served): State<Served>, asked: Asked<Record>) -
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Follow {
-    addresses: Vec<String>,
+    addresses: List<Address, { trend::TRACES }>,
 }
 
 pub(super) async fn follow(State(served): State<Served>, asked: Asked<Follow>) -> Answer<Done> {
     let Json(Follow { addresses }) = asked?;
-    let done = served.engine.ask(move |engine| engine.bench.follow(&addresses)).await?;
+    let done = served.engine.ask(move |engine| engine.bench.follow(&texts(addresses))).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
+}
+
+fn texts<const MOST: usize>(addresses: List<Address, MOST>) -> Vec<String> {
+    addresses.into_vec().into_iter().map(Address::into_string).collect()
 }

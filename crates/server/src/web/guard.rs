@@ -38,20 +38,19 @@ pub(super) struct Guard {
     /// `Host` values that mean this server.
     hosts: Vec<String>,
     token: Option<String>,
-    read_only: bool,
     counts: Mutex<HashMap<IpAddr, (Instant, u32)>>,
 }
 
 impl Guard {
     /// Guards a server bound to an address; a token must be given by all who ask.
-    pub(super) fn new(bound: SocketAddr, token: Option<String>, read_only: bool) -> Guard {
+    pub(super) fn new(bound: SocketAddr, token: Option<String>) -> Guard {
         let port = bound.port();
         let mut hosts = Vec::new();
         if bound.ip().is_loopback() || bound.ip().is_unspecified() {
             hosts.extend([format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")]);
         }
         hosts.push(bound.to_string());
-        Guard { hosts, token, read_only, counts: Mutex::default() }
+        Guard { hosts, token, counts: Mutex::default() }
     }
 
     /// A server on all addresses is asked for by names this program cannot know; the token is what counts then.
@@ -75,9 +74,6 @@ impl Guard {
         }
         if self.token.as_ref().is_some_and(|token| !given(headers, token)) {
             return Err(Problem::new(StatusCode::UNAUTHORIZED, "expected the token this server was started with"));
-        }
-        if self.read_only && !matches!(*request.method(), Method::GET | Method::HEAD) {
-            return Err(Problem::forbidden("this server was started read-only"));
         }
         Ok(())
     }
@@ -143,6 +139,14 @@ pub(super) async fn guard(
         headers.entry(name).or_insert(HeaderValue::from_static(value));
     }
     response
+}
+
+/// Stands before every route, behind the choice of the method: who may only look changes nothing.
+pub(super) async fn only_look(request: Request, next: Next) -> Response {
+    match *request.method() {
+        Method::GET | Method::HEAD => next.run(request).await,
+        _ => Problem::forbidden("this server was started read-only").into_response(),
+    }
 }
 
 /// A header that stands once.

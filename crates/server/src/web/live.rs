@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use axum::extract::State;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
@@ -60,7 +61,11 @@ struct Known {
     values: BTreeMap<String, serde_json::Value>,
 }
 
-pub(super) async fn live(State(served): State<Served>, upgrade: WebSocketUpgrade) -> Result<Response, Problem> {
+pub(super) async fn live(
+    State(served): State<Served>,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Result<Response, Problem> {
+    let upgrade = upgrade?;
     let places: Arc<Semaphore> = Arc::clone(&served.browsers);
     let place = places.try_acquire_owned();
     let place =

@@ -1,19 +1,22 @@
 //! The web server: routes, what stands before them, and what a browser gets.
 
+mod asked;
 mod control;
+mod describe;
 mod guard;
 mod live;
 mod pages;
 mod problem;
 mod read;
 
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::middleware;
-use axum::routing::{get, post};
+use axum::routing::{MethodRouter, get, post};
 use ladder::Value;
 use serde::Serialize;
 use tokio::net::TcpListener;
@@ -33,6 +36,10 @@ pub(crate) struct Served {
     program: Arc<dyn Program>,
     browsers: Arc<Semaphore>,
     read_only: bool,
+    /// Those who ask must give a token.
+    token: bool,
+    /// Tells this run of the server from others, so that a page sees that it was started again.
+    server: Arc<str>,
 }
 
 /// How a program is served.
@@ -59,32 +66,47 @@ pub async fn serve(
     if !bound.ip().is_loopback() && access.token.is_none() {
         return Err(std::io::Error::other("a server that others can reach needs a token"));
     }
-    let served =
-        Served { engine, program, browsers: Arc::new(Semaphore::new(live::BROWSERS)), read_only: access.read_only };
-    let guard = Arc::new(Guard::new(bound, access.token, access.read_only));
+    let served = Served {
+        engine,
+        program,
+        browsers: Arc::new(Semaphore::new(live::BROWSERS)),
+        read_only: access.read_only,
+        token: access.token.is_some(),
+        server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
+    };
+    let guard = Arc::new(Guard::new(bound, access.token));
     let routes = router(served, guard).into_make_service_with_connect_info::<SocketAddr>();
     axum::serve(listener, routes).with_graceful_shutdown(ended).await
 }
 
+/// Every route with what answers it; the same paths stand in `openapi.json`.
+fn routes() -> Vec<(&'static str, MethodRouter<Served>)> {
+    vec![
+        ("/", get(pages::index)),
+        ("/assets/{name}", get(pages::asset)),
+        ("/api/openapi.json", get(pages::openapi)),
+        ("/api/project", get(read::project)),
+        ("/api/state", get(read::state)),
+        ("/api/routines/{routine}/rungs", get(read::rungs)),
+        ("/api/routines/{routine}/heights", get(read::heights)),
+        ("/api/data/{file}", get(read::data)),
+        ("/api/uses", get(read::uses)),
+        ("/api/search", get(read::search)),
+        ("/api/trend", get(read::trend).post(control::follow)),
+        ("/api/control", post(control::control)),
+        ("/api/write", post(control::write)),
+        ("/api/force", post(control::force)),
+        ("/api/record", post(control::record)),
+        ("/api/live", get(live::live)),
+    ]
+}
+
 fn router(served: Served, guard: Arc<Guard>) -> Router {
-    Router::new()
-        .route("/api/project", get(read::project))
-        .route("/api/state", get(read::state))
-        .route("/api/routines/{routine}/rungs", get(read::rungs))
-        .route("/api/routines/{routine}/heights", get(read::heights))
-        .route("/api/data/{file}", get(read::data))
-        .route("/api/uses", get(read::uses))
-        .route("/api/search", get(read::search))
-        .route("/api/trend", get(read::trend).post(control::follow))
-        .route("/api/control", post(control::control))
-        .route("/api/write", post(control::write))
-        .route("/api/force", post(control::force))
-        .route("/api/record", post(control::record))
-        .route("/api/live", get(live::live))
-        .route("/api/openapi.json", get(pages::openapi))
-        .route("/", get(pages::index))
-        .route("/assets/{name}", get(pages::asset))
-        .fallback(pages::missing)
+    let mut all = routes().into_iter().fold(Router::new(), |all, (path, answer)| all.route(path, answer));
+    if served.read_only {
+        all = all.route_layer(middleware::from_fn(guard::only_look));
+    }
+    all.fallback(pages::missing)
         .method_not_allowed_fallback(pages::wrong_method)
         .layer(DefaultBodyLimit::max(BODY))
         .layer(middleware::from_fn_with_state(guard, guard::guard))
@@ -94,6 +116,8 @@ fn router(served: Served, guard: Arc<Guard>) -> Router {
 /// The state of the run, as browsers get it.
 #[derive(Debug, Serialize)]
 pub(crate) struct Status {
+    /// Another text than before: the server was started again.
+    server: String,
     /// `paused`, `run` or `fast`.
     pace: &'static str,
     /// Times real time, while `run`.
@@ -141,6 +165,7 @@ impl Status {
             gauges.iter().map(|it| (it.element.clone(), it.quantity.clone(), it.value, it.unit)).collect()
         };
         Status {
+            server: served.server.to_string(),
             pace,
             speed,
             mode: status.mode,

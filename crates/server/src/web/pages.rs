@@ -1,10 +1,16 @@
 //! The pages themselves: files that are part of the program.
 
-use axum::extract::Path;
+use axum::Json;
+use axum::extract::rejection::PathRejection;
+use axum::extract::{Path, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::http::{StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 
+use serde_json::Value;
+
+use super::Served;
+use super::describe::description;
 use super::problem::Problem;
 
 const HTML: &str = "text/html; charset=utf-8";
@@ -31,15 +37,16 @@ pub(super) async fn index() -> Response {
     ([(CONTENT_TYPE, HTML)], include_str!("../../assets/index.html")).into_response()
 }
 
-pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Problem> {
+pub(super) async fn asset(name: Result<Path<String>, PathRejection>) -> Result<Response, Problem> {
+    let Path(name) = name?;
     let found = ASSETS.iter().find(|asset| asset.0 == name);
     let (_, kind, content) = found.ok_or_else(|| Problem::missing("there is no such file"))?;
     Ok(([(CONTENT_TYPE, *kind)], *content).into_response())
 }
 
 /// What the API offers, in the form tools read.
-pub(super) async fn openapi() -> Response {
-    ([(CONTENT_TYPE, "application/json")], include_str!("../../assets/openapi.json")).into_response()
+pub(super) async fn openapi(State(served): State<Served>) -> Json<Value> {
+    Json(description(served.token, served.program.outline()))
 }
 
 pub(super) async fn missing(uri: Uri) -> Problem {

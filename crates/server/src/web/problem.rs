@@ -2,7 +2,9 @@
 
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
-use axum::http::StatusCode;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
+use axum::http::header::RETRY_AFTER;
+use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 
@@ -35,15 +37,24 @@ impl Problem {
         Problem::new(StatusCode::NOT_FOUND, why)
     }
 
-    /// It cannot be done with this program or in this state.
-    pub(super) fn refused(why: impl Into<String>) -> Problem {
+    /// It makes no sense, whatever program is served.
+    pub(super) fn unfit(why: impl Into<String>) -> Problem {
         Problem::new(StatusCode::UNPROCESSABLE_ENTITY, why)
+    }
+
+    /// It makes sense, but not with this program or in this state.
+    pub(super) fn refused(why: impl Into<String>) -> Problem {
+        Problem::new(StatusCode::CONFLICT, why)
     }
 }
 
 impl IntoResponse for Problem {
     fn into_response(self) -> Response {
-        (self.status, Json(Body { error: &self.why })).into_response()
+        let mut response = (self.status, Json(Body { error: &self.why })).into_response();
+        if self.status == StatusCode::TOO_MANY_REQUESTS {
+            response.headers_mut().insert(RETRY_AFTER, HeaderValue::from_static("10"));
+        }
+        response
     }
 }
 
@@ -67,6 +78,12 @@ impl From<QueryRejection> for Problem {
 
 impl From<PathRejection> for Problem {
     fn from(why: PathRejection) -> Problem {
+        Problem::new(why.status(), why.body_text())
+    }
+}
+
+impl From<WebSocketUpgradeRejection> for Problem {
+    fn from(why: WebSocketUpgradeRejection) -> Problem {
         Problem::new(why.status(), why.body_text())
     }
 }

@@ -6,6 +6,7 @@ use axum::extract::{Path, Query, State};
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
+use super::asked::{Address, SAFE, Text, Whole};
 use super::problem::Problem;
 use super::{Served, Status};
 use crate::view::{DataView, HitsView, Outline, RungView, UsesView};
@@ -15,11 +16,15 @@ type Asked<T> = Result<Query<T>, QueryRejection>;
 type Named<T> = Result<Path<T>, PathRejection>;
 
 /// Rungs and elements of one answer.
-const RUNGS: usize = 200;
-const ELEMENTS: usize = 1000;
+const RUNGS: u64 = 200;
+const ELEMENTS: u64 = 1000;
 
-/// Longest text that is searched for.
+/// Longest text that is searched for, characters.
 const TEXT: usize = 500;
+
+/// Columns of a drawing, and how many it has when nothing is said.
+type Columns = Whole<{ render::MIN_WIDTH as u64 }, { render::MAX_WIDTH as u64 }>;
+const COLUMNS: usize = 100;
 
 pub(super) async fn project(State(served): State<Served>) -> Json<Outline> {
     Json(served.program.outline().clone())
@@ -30,31 +35,30 @@ pub(super) async fn state(State(served): State<Served>) -> Json<Status> {
     Json(Status::of(&frame.status, &served))
 }
 
-/// A stretch of rungs or elements.
+/// A stretch of rungs.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Stretch {
+pub(super) struct Rungs {
     /// The first.
-    #[serde(default)]
-    from: usize,
+    from: Option<Whole<0, SAFE>>,
     /// How many.
-    count: Option<usize>,
-    /// Columns of a drawing.
-    width: Option<usize>,
+    count: Option<Whole<0, RUNGS>>,
+    width: Option<Columns>,
 }
 
 pub(super) async fn rungs(
     State(served): State<Served>,
     routine: Named<u16>,
-    asked: Asked<Stretch>,
+    asked: Asked<Rungs>,
 ) -> Answer<Vec<RungView>> {
-    let (Path(routine), Query(Stretch { from, count, width })) = (routine?, asked?);
+    let (Path(routine), Query(Rungs { from, count, width })) = (routine?, asked?);
     let outline = served.program.outline();
     let Some(found) = outline.routines.iter().find(|it| it.number == routine) else {
-        return Err(Problem::missing(format!("there is no program file or code block {routine}")));
+        return Err(no_routine(routine));
     };
-    let last = found.rungs.min(from.saturating_add(count.unwrap_or(50).min(RUNGS)));
-    let width = width.unwrap_or(100);
+    let from = from.map_or(0, Whole::size);
+    let last = found.rungs.min(from.saturating_add(count.map_or(50, Whole::size)));
+    let width = width.map_or(COLUMNS, Whole::size);
     let program = served.program;
     let drawn = spawn_blocking(move || (from..last).filter_map(|index| program.rung(routine, index, width)).collect());
     Ok(Json(drawn.await.map_err(broken)?))
@@ -64,7 +68,7 @@ pub(super) async fn rungs(
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Width {
-    width: Option<usize>,
+    width: Option<Columns>,
 }
 
 pub(super) async fn heights(
@@ -73,8 +77,15 @@ pub(super) async fn heights(
     asked: Asked<Width>,
 ) -> Answer<Vec<usize>> {
     let (Path(routine), Query(Width { width })) = (routine?, asked?);
-    let heights = spawn_blocking(move || served.program.heights(routine, width.unwrap_or(100)));
+    if !served.program.outline().routines.iter().any(|it| it.number == routine) {
+        return Err(no_routine(routine));
+    }
+    let heights = spawn_blocking(move || served.program.heights(routine, width.map_or(COLUMNS, Whole::size)));
     Ok(Json(heights.await.map_err(broken)?))
+}
+
+fn no_routine(routine: u16) -> Problem {
+    Problem::missing(format!("there is no program file or code block {routine}"))
 }
 
 /// A task that was cancelled: the server ends.
@@ -82,9 +93,21 @@ fn broken(why: tokio::task::JoinError) -> Problem {
     Problem::new(axum::http::StatusCode::SERVICE_UNAVAILABLE, why.to_string())
 }
 
-pub(super) async fn data(State(served): State<Served>, file: Named<String>, asked: Asked<Stretch>) -> Answer<DataView> {
-    let (Path(file), Query(Stretch { from, count, .. })) = (file?, asked?);
-    let view = served.program.data(&file, from, count.unwrap_or(200).min(ELEMENTS));
+/// A stretch of elements.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Elements {
+    from: Option<Whole<0, SAFE>>,
+    count: Option<Whole<0, ELEMENTS>>,
+}
+
+pub(super) async fn data(
+    State(served): State<Served>,
+    file: Named<String>,
+    asked: Asked<Elements>,
+) -> Answer<DataView> {
+    let (Path(file), Query(Elements { from, count })) = (file?, asked?);
+    let view = served.program.data(&file, from.map_or(0, Whole::size), count.map_or(200, Whole::size));
     view.map(Json).ok_or_else(|| Problem::missing(format!("there is no data file {file}")))
 }
 
@@ -92,12 +115,12 @@ pub(super) async fn data(State(served): State<Served>, file: Named<String>, aske
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Of {
-    address: String,
+    address: Address,
 }
 
 pub(super) async fn uses(State(served): State<Served>, asked: Asked<Of>) -> Answer<UsesView> {
     let Query(Of { address }) = asked?;
-    let found = spawn_blocking(move || served.program.uses(&address)).await.map_err(broken)?;
+    let found = spawn_blocking(move || served.program.uses(address.as_str())).await.map_err(broken)?;
     found.map(Json).map_err(Problem::missing)
 }
 
@@ -105,15 +128,15 @@ pub(super) async fn uses(State(served): State<Served>, asked: Asked<Of>) -> Answ
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct For {
-    q: String,
+    q: Text<TEXT>,
 }
 
 pub(super) async fn search(State(served): State<Served>, asked: Asked<For>) -> Answer<HitsView> {
     let Query(For { q }) = asked?;
-    if q.trim().is_empty() || q.len() > TEXT {
-        return Err(Problem::refused(format!("expected a text of 1 to {TEXT} bytes, found {}", q.len())));
+    if q.as_str().trim().is_empty() {
+        return Ok(Json(HitsView::default()));
     }
-    let found = spawn_blocking(move || served.program.search(&q)).await.map_err(broken)?;
+    let found = spawn_blocking(move || served.program.search(q.as_str())).await.map_err(broken)?;
     found.map(Json).map_err(Problem::refused)
 }
 
@@ -121,8 +144,7 @@ pub(super) async fn search(State(served): State<Served>, asked: Asked<For>) -> A
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Since {
-    #[serde(default)]
-    since: u64,
+    since: Option<Whole<0, SAFE>>,
 }
 
 /// The traces that are followed.
@@ -142,6 +164,7 @@ struct Trace {
 
 pub(super) async fn trend(State(served): State<Served>, asked: Asked<Since>) -> Answer<Trend> {
     let Query(Since { since }) = asked?;
+    let since = since.map_or(0, Whole::get);
     let traces = served.engine.ask(move |engine| {
         let trace = |trace: &crate::workbench::trend::Trace| Trace {
             address: trace.address.clone(),
