@@ -77,12 +77,12 @@ fn sum(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction, minus: bool) -> C
         store_float(cx, e, &result, &to);
         return Ok(());
     }
+    let carry = carry_of(&a, &b, minus, to.width);
     if to.width == Width::Long || !(a.fits(Width::Word) && b.fits(Width::Word)) {
-        long_sum(cx, e, &a, &b, minus, &to);
+        long_sum(cx, e, (&a, &b), minus, &carry, &to);
         return Ok(());
     }
     let result = if minus { a.minus(&b) } else { a.plus(&b) };
-    let carry = carry_of(&a, &b, minus, to.width);
     integer(cx, e, &result, &carry, &to);
     Ok(())
 }
@@ -466,11 +466,21 @@ fn negate(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     let (source, to) = unary(cx, i)?;
     if is_float(&[&source], &to) {
         store_float(cx, e, &source.float_negated(), &to);
-    } else if source.fits(Width::Word) {
-        let carry = Carry::Is(format!("IF({0} == 0, 0, IF({0} == -32768, 0, 1))", source.atom()));
-        integer(cx, e, &Value::integer(0).minus(&source), &carry, &to);
+        return Ok(());
+    }
+    // Reset by 0 and by what does not fit.
+    let value = source.atom();
+    let beyond = |low: &str| format!("IF({value} < {low}, 0, 1)");
+    let carry = match (to.width, source.fits(Width::Word)) {
+        (Width::Long, true) => format!("IF({value} == 0, 0, 1)"),
+        (Width::Long, false) => format!("IF({value} == 0, 0, {})", beyond("-2147483647")),
+        (_, true) => format!("IF({value} == 0, 0, {})", beyond("-32767")),
+        (_, false) => format!("IF({value} == 0, 0, IF({value} > 32768, 0, {}))", beyond("-32767")),
+    };
+    if source.fits(Width::Word) {
+        integer(cx, e, &Value::integer(0).minus(&source), &Carry::Is(carry), &to);
     } else {
-        long_sum(cx, e, &Value::integer(0), &source, true, &to);
+        long_sum(cx, e, (&Value::integer(0), &source), true, &Carry::Is(carry), &to);
     }
     Ok(())
 }
@@ -481,12 +491,14 @@ fn absolute(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted
         store_float(cx, e, &source.float_function("ABS"), &to);
         return Ok(());
     }
+    let slc_like = cx.slc_like();
+    let negative = |source: &Value| format!("IF({} < 0, 1, 0)", source.atom());
     if source.fits(Width::Word) {
-        let carry = if cx.slc_like() { Carry::Off } else { Carry::Is(format!("IF({} < 0, 1, 0)", source.atom())) };
+        let carry = if slc_like { Carry::Off } else { Carry::Is(negative(&source)) };
         integer(cx, e, &source.magnitude(), &carry, &to);
         return Ok(());
     }
-    // The magnitude of the lowest long word is the highest one, with overflow.
+    // The magnitude of the lowest long word overflows: the highest one, or itself where it is cut.
     let low = limits(Width::Long).0;
     let source = settled(e, &source, &cx.scratch_long(2));
     let trap = cx.minor_error_bit(0);
@@ -494,10 +506,25 @@ fn absolute(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted
         e.and_compare(Relation::Equal, source.text(), &low.to_string());
         e.set(&trap);
     });
+    let wrap = cx.wrap();
+    let (least, most) = (Value::integer(low), Value::integer(limits(Width::Long).1));
+    let lowest = match &wrap {
+        Wrap::Never => most,
+        Wrap::Always => least,
+        Wrap::By(bit) => choose(&format!("{bit} == 1"), &least, &most),
+    };
     let magnitude = source.magnitude().bounded(0, limits(Width::Long).1);
-    let top = Value::integer(limits(Width::Long).1);
-    let result = choose(&relation(&source, "<", &Value::integer(low + 1)), &top, &magnitude);
-    integer_as(cx, e, &result, &Carry::Off, &to, &Wrap::Never);
+    let result = choose(&relation(&source, "<", &Value::integer(low + 1)), &lowest, &magnitude);
+    // A destination of 32 bits does not show by itself that the result was none of them.
+    let mut flags = Vec::new();
+    if !slc_like {
+        flags.push(negative(&source));
+    }
+    if to.width == Width::Long {
+        flags.push(format!("IF({} < -2147483647, 2, 0)", source.atom()));
+    }
+    let carry = if flags.is_empty() { Carry::Off } else { Carry::Is(flags.join(" + ")) };
+    integer_as(cx, e, &result, &carry, &to, &wrap);
     Ok(())
 }
 

@@ -215,6 +215,9 @@ fn compare(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted 
     let (file, mask, source) = (operand(i, 0)?, operand(i, 1)?, operand(i, 2)?);
     let start = cx.start(file)?;
     reaches(&start, &control, file)?;
+    if start.block == Block::D {
+        return Err(Person::new(Mark::Files, "a sequencer of long words"));
+    }
     let (position, found) = (control.position.clone(), control.bit(cx, FD)?);
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
@@ -253,9 +256,11 @@ fn load(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
 
 /// The file has a word for every step.
 fn reaches(start: &Start, control: &Control, file: &Operand) -> Converted {
-    let words = u32::try_from(control.length).unwrap_or(u32::MAX).saturating_add(1);
-    if start.fixed.is_none() || start.words < words {
-        return Err(Person::new(Mark::Files, format!("{file}: {words} words from a fixed place are needed")));
+    let steps = u32::try_from(control.length).unwrap_or(u32::MAX).saturating_add(1);
+    // A step of long words takes two words.
+    let (each, name) = if start.block == Block::D { (2, "long words") } else { (1, "words") };
+    if start.fixed.is_none() || start.words < steps.saturating_mul(each) {
+        return Err(Person::new(Mark::Files, format!("{file}: {steps} {name} from a fixed place are needed")));
     }
     Ok(())
 }

@@ -306,12 +306,18 @@ fn float_flags(cx: &mut Context<'_>, e: &mut Emitter, kept: &str) {
 
 /// Stores a sum or difference of which one operand or the destination is a long word: what leaves 32
 /// bits is limited (or cut).
-pub(super) fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Value, minus: bool, target: &Target) {
+pub(super) fn long_sum(
+    cx: &mut Context<'_>,
+    e: &mut Emitter,
+    (a, b): (&Value, &Value),
+    minus: bool,
+    carry: &Carry,
+    target: &Target,
+) {
     let sum = if minus { a.minus(b) } else { a.plus(b) };
     let wrap = cx.wrap();
-    let carry = carry_of(a, b, minus, Width::Long);
     if sum.fits(Width::Long) || target.width == Width::Float {
-        return integer_as(cx, e, &sum, &carry, target, &wrap);
+        return integer_as(cx, e, &sum, carry, target, &wrap);
     }
     let (low, high) = limits(Width::Long);
     let (top, bottom) = (Value::integer(high), Value::integer(low));
@@ -363,30 +369,48 @@ pub(super) fn long_sum(cx: &mut Context<'_>, e: &mut Emitter, a: &Value, b: &Val
         e.and_compare(Relation::NotEqual, &side, "0");
         e.set(&trap);
     });
-    if target.width == Width::Long {
-        put(e, &value, target);
-        if cx.facts.names_status(0) {
-            cx.condition(Mark::MathRegister, "S:0/0 (carry) of 32-bit sums is not kept up");
-            let kept = if target.plain { target.text.clone() } else { sum.text().to_owned() };
-            store_flags(cx, e, &Carry::Off, &format!("IF({side} == 0, 0, 2)"), &kept);
+    if target.width != Width::Long {
+        integer_as(cx, e, &value, carry, target, &wrap);
+    } else if cx.facts.names_status(0) {
+        if let Carry::Is(expression) = carry {
+            let scratch = cx.scratch_long(CARRY);
+            e.math(&scratch, expression);
         }
+        let kept = if target.plain { target.text.clone() } else { cx.scratch_long(WHOLE) };
+        put(e, &value, &Target { text: kept.clone(), width: Width::Long, plain: true });
+        if !target.plain {
+            e.math(&destination(target), &kept);
+        }
+        store_flags(cx, e, carry, &format!("IF({side} == 0, 0, 2)"), &kept);
     } else {
-        integer_as(cx, e, &value, &Carry::Off, target, &wrap);
+        put(e, &value, target);
     }
 }
 
 /// Carry of A + B, or borrow of A - B, as of unsigned numbers of the destination's width.
 pub(super) fn carry_of(a: &Value, b: &Value, minus: bool, width: Width) -> Carry {
-    if width != Width::Word {
-        return Carry::Off;
+    match width {
+        Width::Float => Carry::Off,
+        Width::Word => {
+            let mask = Value::integer(65_535);
+            let (low_a, low_b) = (a.bit_and(&mask), b.bit_and(&mask));
+            Carry::Is(if minus {
+                format!("IF({} < {}, 1, 0)", low_a.atom(), low_b.atom())
+            } else {
+                format!("IF({} + {} > 65535, 1, 0)", low_a.atom(), low_b.atom())
+            })
+        }
+        // Expressions have signs: of unsigned numbers those below 0 are the large ones.
+        Width::Long => {
+            let (a, b) = (a.atom(), b.atom());
+            Carry::Is(if minus {
+                format!("IF({a} < 0, IF({b} < 0, IF({a} < {b}, 1, 0), 0), IF({b} < 0, 1, IF({a} < {b}, 1, 0)))")
+            } else {
+                let meets = format!("IF({a} + {b} < 0, 0, 1)");
+                format!("IF({a} < 0, IF({b} < 0, 1, {meets}), IF({b} < 0, {meets}, 0))")
+            })
+        }
     }
-    let mask = Value::integer(65_535);
-    let (low_a, low_b) = (a.bit_and(&mask), b.bit_and(&mask));
-    Carry::Is(if minus {
-        format!("IF({} < {}, 1, 0)", low_a.atom(), low_b.atom())
-    } else {
-        format!("IF({} + {} > 65535, 1, 0)", low_a.atom(), low_b.atom())
-    })
 }
 
 /// The rounding of DIV on two known integers.

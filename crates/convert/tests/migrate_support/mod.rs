@@ -189,6 +189,12 @@ impl Both {
         self.slc.is_executing()
     }
 
+    /// Whether the converted program goes on: where the original stops it sets a bit.
+    pub(crate) fn other_runs(&self) -> bool {
+        let fault = self.migration.project.documentation().find(|row| row.nickname == "slcFault");
+        fault.is_none_or(|row| self.domore.get(&row.element) != Ok(engine::Value::Bit(true)))
+    }
+
     pub(crate) fn difference(&self) -> Option<String> {
         // A stopped original keeps its data; what its outputs show is zero on both sides.
         if !self.slc.is_executing() {
