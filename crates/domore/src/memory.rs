@@ -182,6 +182,14 @@ impl Block {
         (number < self.count).then(|| self.start + number * self.element.bits())
     }
 
+    /// The name of an element, numbered as programs write it.
+    pub fn element_name(&self, number: u32) -> String {
+        match self.radix {
+            Radix::Octal => format!("{}{number:o}", self.name),
+            Radix::Decimal => format!("{}{number}", self.name),
+        }
+    }
+
     /// Whether the I/O scan fills it from the terminals.
     pub fn is_input(&self) -> bool {
         INPUTS.iter().any(|name| self.name.eq_ignore_ascii_case(name))

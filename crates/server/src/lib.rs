@@ -11,4 +11,4 @@ pub mod view;
 mod web;
 pub mod workbench;
 
-pub use web::{Access, serve};
+pub use web::{Access, Limits, serve};

@@ -105,7 +105,7 @@ async fn serve(
     if arguments.open {
         show(&page);
     }
-    let access = Access { token, read_only: arguments.read_only };
+    let access = Access { token, read_only: arguments.read_only, ..Access::default() };
     let ended = async {
         if tokio::signal::ctrl_c().await.is_err() {
             // Without signals only the end of the process ends the server.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use analysis::search::{Query, search_domore};
-use domore::address::Radix;
 use domore::documentation::Documentation;
 use domore::instruction::{self, Kind};
 use domore::memory::{ElementType, Map};
@@ -192,10 +191,7 @@ impl Program for DoMoreProgram {
         let block = self.map.block(label)?;
         let last = (block.count as usize).min(from.saturating_add(count));
         let element = |index: usize| {
-            let address = match block.radix {
-                Radix::Octal => format!("{}{index:o}", block.name),
-                Radix::Decimal => format!("{}{index}", block.name),
-            };
+            let address = block.element_name(u32::try_from(index).unwrap_or(u32::MAX));
             let (symbol, description) = self.documented(&address);
             ElementView { address, symbol, description }
         };

@@ -1,10 +1,36 @@
 //! Parts of requests that carry their limits in their type, so that what is beyond them never reaches a handler.
 //! The same limits stand in `openapi.json`, which a schema-driven tester compares with what the server does.
 
-use serde::de::{Deserialize, Deserializer, Error};
+use std::fmt::Formatter;
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
 /// Largest whole number that JSON carries exactly everywhere.
 pub(super) const SAFE: u64 = (1 << 53) - 1;
+
+/// Something that stands in JSON as an object. Without this a list of its parts would do as well.
+#[derive(Clone, Debug)]
+pub(super) struct Object<T>(pub(super) T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Parts<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Parts<T> {
+            type Value = Object<T>;
+
+            fn expecting(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, parts: A) -> Result<Object<T>, A::Error> {
+                T::deserialize(MapAccessDeserializer::new(parts)).map(Object)
+            }
+        }
+        from.deserialize_map(Parts(PhantomData))
+    }
+}
 
 /// A whole number from `LEAST` to `MOST`.
 #[derive(Clone, Copy, Debug)]
@@ -57,10 +83,20 @@ impl<'de, const MOST: usize> Deserialize<'de> for Text<MOST> {
 }
 
 /// A list of at most `MOST` things.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct List<T, const MOST: usize>(Vec<T>);
 
+impl<T, const MOST: usize> Default for List<T, MOST> {
+    fn default() -> Self {
+        List(Vec::new())
+    }
+}
+
 impl<T, const MOST: usize> List<T, MOST> {
+    pub(super) fn as_slice(&self) -> &[T] {
+        &self.0
+    }
+
     pub(super) fn into_vec(self) -> Vec<T> {
         self.0
     }

@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 use sim::scenario::Literal;
 
 use super::Served;
-use super::asked::{Address, List, Name, SAFE, Whole};
+use super::asked::{Address, List, Name, Object, SAFE, Whole};
 use super::problem::Problem;
 use crate::engine::{Engine, MOST_SCANS, Pace};
 use crate::plant::Plant;
 use crate::workbench::{Change, Condition, ModeChange, Recorded, Relation, trend};
 
-type Asked<T> = Result<Json<T>, JsonRejection>;
+type Asked<T> = Result<Json<Object<T>>, JsonRejection>;
 type Answer<T> = Result<Json<T>, Problem>;
 
 /// Longest text of a value, characters.
@@ -97,7 +97,7 @@ pub(super) struct Done {
 }
 
 pub(super) async fn control(State(served): State<Served>, asked: Asked<Control>) -> Answer<Done> {
-    let Json(control) = asked?;
+    let Json(Object(control)) = asked?;
     fits(&control).map_err(Problem::unfit)?;
     let done = served.engine.ask(move |engine| carry_out(engine, control)).await?;
     done.map(|scans| Json(Done { scans })).map_err(Problem::refused)
@@ -221,7 +221,7 @@ enum Given {
 }
 
 pub(super) async fn write(State(served): State<Served>, asked: Asked<Write>) -> Answer<Done> {
-    let Json(Write { address, value }) = asked?;
+    let Json(Object(Write { address, value })) = asked?;
     let literal = match value {
         Given::Bit(on) => Literal::Integer(on.into()),
         Given::Integer(number) => Literal::Integer(number),
@@ -244,7 +244,7 @@ pub(super) struct Force {
 }
 
 pub(super) async fn force(State(served): State<Served>, asked: Asked<Force>) -> Answer<Done> {
-    let Json(Force { address, state }) = asked?;
+    let Json(Object(Force { address, state })) = asked?;
     let change = Change::Force { address: address.into_string(), state };
     let done = served.engine.ask(move |engine| engine.bench.change(change)).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
@@ -273,7 +273,7 @@ pub(super) struct Recording {
 }
 
 pub(super) async fn record(State(served): State<Served>, asked: Asked<Record>) -> Answer<Recording> {
-    let Json(record) = asked?;
+    let Json(Object(record)) = asked?;
     let (program, family) = (served.program.file_name().to_owned(), served.program.scenario_family());
     let done = served.engine.ask(move |engine| -> Result<Recording, String> {
         match record {
@@ -305,7 +305,7 @@ pub(super) struct Follow {
 }
 
 pub(super) async fn follow(State(served): State<Served>, asked: Asked<Follow>) -> Answer<Done> {
-    let Json(Follow { addresses }) = asked?;
+    let Json(Object(Follow { addresses })) = asked?;
     let done = served.engine.ask(move |engine| engine.bench.follow(&texts(addresses))).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
 }

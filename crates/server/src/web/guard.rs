@@ -5,17 +5,21 @@
 //! server's own; beyond loopback a token is needed as well. Nothing is ever shared with other origins.
 
 use std::collections::HashMap;
+use std::error::Error;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use axum::body::{Body, HttpBody, to_bytes};
 use axum::extract::{ConnectInfo, Request, State};
 use axum::http::header::{AUTHORIZATION, CACHE_CONTROL, CONTENT_SECURITY_POLICY, COOKIE, HOST, LOCATION, ORIGIN};
 use axum::http::header::{REFERRER_POLICY, SET_COOKIE, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use http_body_util::LengthLimitError;
 
+use super::BODY;
 use super::problem::Problem;
 
 /// Name of the cookie that holds the token.
@@ -38,19 +42,21 @@ pub(super) struct Guard {
     /// `Host` values that mean this server.
     hosts: Vec<String>,
     token: Option<String>,
+    /// How long a body may take.
+    body: Duration,
     counts: Mutex<HashMap<IpAddr, (Instant, u32)>>,
 }
 
 impl Guard {
     /// Guards a server bound to an address; a token must be given by all who ask.
-    pub(super) fn new(bound: SocketAddr, token: Option<String>) -> Guard {
+    pub(super) fn new(bound: SocketAddr, token: Option<String>, body: Duration) -> Guard {
         let port = bound.port();
         let mut hosts = Vec::new();
         if bound.ip().is_loopback() || bound.ip().is_unspecified() {
             hosts.extend([format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")]);
         }
         hosts.push(bound.to_string());
-        Guard { hosts, token, counts: Mutex::default() }
+        Guard { hosts, token, body, counts: Mutex::default() }
     }
 
     /// A server on all addresses is asked for by names this program cannot know; the token is what counts then.
@@ -124,7 +130,10 @@ pub(super) async fn guard(
     let mut response = match guard.signing_in(request.uri()) {
         Some(response) => response,
         None => match guard.check(&request, from.ip()) {
-            Ok(()) => next.run(request).await,
+            Ok(()) => match arrived(request, guard.body).await {
+                Ok(request) => next.run(request).await,
+                Err(problem) => problem.into_response(),
+            },
             Err(problem) => problem.into_response(),
         },
     };
@@ -139,6 +148,27 @@ pub(super) async fn guard(
         headers.entry(name).or_insert(HeaderValue::from_static(value));
     }
     response
+}
+
+/// A request with its whole body, which must arrive in time.
+async fn arrived(request: Request, patience: Duration) -> Result<Request, Problem> {
+    if request.body().is_end_stream() {
+        return Ok(request);
+    }
+    let (head, body) = request.into_parts();
+    let too_long = || Problem::new(StatusCode::PAYLOAD_TOO_LARGE, format!("expected a body of at most {BODY} bytes"));
+    // What is announced as too long need not come.
+    if body.size_hint().lower() > BODY as u64 {
+        return Err(too_long());
+    }
+    let bytes = tokio::time::timeout(patience, to_bytes(body, BODY))
+        .await
+        .map_err(|_| Problem::new(StatusCode::REQUEST_TIMEOUT, format!("the body did not arrive in {patience:?}")))?;
+    let bytes = bytes.map_err(|why| match why.source().is_some_and(|why| why.is::<LengthLimitError>()) {
+        true => too_long(),
+        false => Problem::new(StatusCode::BAD_REQUEST, "the body is malformed"),
+    })?;
+    Ok(Request::from_parts(head, Body::from(bytes)))
 }
 
 /// Stands before every route, behind the choice of the method: who may only look changes nothing.

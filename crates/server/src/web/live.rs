@@ -6,14 +6,18 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
+use axum::body::Bytes;
 use axum::extract::State;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
-use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_code};
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use tokio::sync::{Semaphore, watch};
+use tokio::time::{Instant, interval};
 
+use super::asked::{List, Object};
 use super::problem::Problem;
 use super::{Served, Status, json_value};
 use crate::engine::Frame;
@@ -28,16 +32,20 @@ const MESSAGE: usize = 256 << 10;
 /// Browsers at once.
 pub(super) const BROWSERS: usize = 200;
 
+/// Messages of one browser in [`WINDOW`]: one for every picture of a page that is scrolled, and as many again.
+const MESSAGES: u32 = 1200;
+const WINDOW: Duration = Duration::from_secs(10);
+
 /// What a browser shows.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct See {
     /// Rungs: routine and number.
     #[serde(default)]
-    rungs: Vec<(u16, u16)>,
+    rungs: List<(u16, u16), RUNGS>,
     /// Addresses.
     #[serde(default)]
-    values: Vec<String>,
+    values: List<String, VALUES>,
 }
 
 /// What a browser is told.
@@ -85,37 +93,69 @@ async fn follow(
 ) -> Result<(), axum::Error> {
     let mut see = See::default();
     let mut known = Known::default();
+    let mut heard = Instant::now();
+    let mut window = (Instant::now(), 0);
+    let mut pings = interval(served.silent / 3);
     frames.mark_changed();
     loop {
         tokio::select! {
-            message = socket.recv() => match message {
-                Some(Ok(Message::Text(text))) => match serde_json::from_str::<See>(&text) {
-                    Ok(asked) if asked.rungs.len() <= RUNGS && asked.values.len() <= VALUES => {
-                        known = Known::default();
-                        see = asked;
-                        frames.mark_changed();
-                    }
-                    _ => return socket.send(Message::Close(None)).await,
-                },
-                Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
-                Some(Ok(_)) => {}
-            },
+            message = socket.recv() => {
+                heard = Instant::now();
+                if window.0.elapsed() >= WINDOW {
+                    window = (heard, 0);
+                }
+                window.1 += 1;
+                if window.1 > MESSAGES {
+                    return part(&mut socket, format!("more than {MESSAGES} messages in {WINDOW:?}")).await;
+                }
+                match message {
+                    Some(Ok(Message::Text(text))) => match serde_json::from_str::<Object<See>>(&text) {
+                        Ok(Object(asked)) => {
+                            known = Known::default();
+                            see = asked;
+                            frames.mark_changed();
+                        }
+                        Err(why) => return part(&mut socket, why.to_string()).await,
+                    },
+                    Some(Ok(Message::Binary(_))) => return part(&mut socket, "expected a text".to_owned()).await,
+                    Some(Ok(Message::Close(_)) | Err(_)) | None => return Ok(()),
+                    Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                }
+            }
             changed = frames.changed() => {
                 if changed.is_err() {
-                    return socket.send(Message::Close(None)).await;
+                    return part(&mut socket, "the simulation has ended".to_owned()).await;
                 }
-                let frame = Arc::clone(&frames.borrow_and_update());
-                let text = tell(&frame, &see, &mut known, served);
+                // The frame itself is not held while a slow browser takes its time.
+                let text = {
+                    let frame = Arc::clone(&frames.borrow_and_update());
+                    tell(&frame, &see, &mut known, served)
+                };
                 socket.send(Message::Text(text.into())).await?;
+            }
+            _ = pings.tick() => {
+                if heard.elapsed() > served.silent {
+                    return Ok(());
+                }
+                socket.send(Message::Ping(Bytes::new())).await?;
             }
         }
     }
 }
 
+/// Closes the connection and says why.
+async fn part(socket: &mut WebSocket, mut why: String) -> Result<(), axum::Error> {
+    // A close frame has room for so many bytes.
+    while why.len() > 120 {
+        why.pop();
+    }
+    socket.send(Message::Close(Some(CloseFrame { code: close_code::POLICY, reason: why.into() }))).await
+}
+
 fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String {
     let status = Status::of(&frame.status, served);
     let mut told = Told { frame: frame.number, status: &status, rungs: BTreeMap::new(), values: BTreeMap::new() };
-    for rung in &see.rungs {
+    for rung in see.rungs.as_slice() {
         let bits = frame.flow.rung(rung.0, rung.1);
         if known.rungs.get(rung).is_none_or(|last| last != bits) {
             let digits = bits.iter().filter_map(|bits| char::from_digit(u32::from(bits & 15), 16)).collect();
@@ -123,7 +163,7 @@ fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String 
             known.rungs.insert(*rung, bits.to_vec());
         }
     }
-    for address in &see.values {
+    for address in see.values.as_slice() {
         let value =
             frame.machine.controller().read(address).map_or(serde_json::Value::Null, |value| json_value(&value));
         if known.values.get(address) != Some(&value) {

@@ -1,6 +1,7 @@
 //! The web server: routes, what stands before them, and what a browser gets.
 
 mod asked;
+mod connections;
 mod control;
 mod describe;
 mod guard;
@@ -10,8 +11,8 @@ mod problem;
 mod read;
 
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -24,6 +25,7 @@ use tokio::sync::Semaphore;
 
 use crate::engine::{self, Handle, Pace};
 use crate::view::Program;
+pub use connections::Limits;
 use guard::Guard;
 
 /// Longest body of a request: a plant file.
@@ -38,6 +40,8 @@ pub(crate) struct Served {
     read_only: bool,
     /// Those who ask must give a token.
     token: bool,
+    /// How long a WebSocket may be silent.
+    silent: Duration,
     /// Tells this run of the server from others, so that a page sees that it was started again.
     server: Arc<str>,
 }
@@ -49,12 +53,14 @@ pub struct Access {
     pub token: Option<String>,
     /// Nothing can be changed.
     pub read_only: bool,
+    /// What one client may take.
+    pub limits: Limits,
 }
 
 /// Serves a program until `ended` is done.
 ///
 /// # Errors
-/// The listener has no address or fails for good; it listens beyond loopback and there is no token.
+/// The listener has no address; it listens beyond loopback and there is no token.
 pub async fn serve(
     listener: TcpListener,
     engine: Handle,
@@ -72,11 +78,12 @@ pub async fn serve(
         browsers: Arc::new(Semaphore::new(live::BROWSERS)),
         read_only: access.read_only,
         token: access.token.is_some(),
+        silent: access.limits.silent,
         server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
     };
-    let guard = Arc::new(Guard::new(bound, access.token));
-    let routes = router(served, guard).into_make_service_with_connect_info::<SocketAddr>();
-    axum::serve(listener, routes).with_graceful_shutdown(ended).await
+    let guard = Arc::new(Guard::new(bound, access.token, access.limits.body));
+    connections::serve(listener, router(served, guard), access.limits, ended).await;
+    Ok(())
 }
 
 /// Every route with what answers it; the same paths stand in `openapi.json`.

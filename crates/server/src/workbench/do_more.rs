@@ -1,6 +1,6 @@
 //! A Do-more machine on the workbench.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -27,7 +27,9 @@ pub struct DoMore {
     machine: Machine,
     program: Program,
     routines: Arc<Vec<Vec<Wires>>>,
-    /// Forced bits. The engine has no forces: inputs are written before, outputs behind every scan.
+    /// Names of input and output bits by their places.
+    points: Arc<HashMap<Handle, String>>,
+    /// Forced bits by their names. The engine has no forces: inputs are written before, outputs behind every scan.
     forces: BTreeMap<String, (Handle, bool)>,
     enabled: bool,
 }
@@ -46,8 +48,10 @@ impl DoMore {
             }
         };
         let rungs = |block: &domore::CodeBlock| (0..block.rungs.len()).map(|index| wires(block, index)).collect();
+        let machine = Machine::new(program.clone());
         DoMore {
-            machine: Machine::new(program.clone()),
+            points: Arc::new(points(&machine, project)),
+            machine,
             program,
             routines: Arc::new(project.code_blocks().map(rungs).collect()),
             forces: BTreeMap::new(),
@@ -74,8 +78,17 @@ impl DoMore {
     }
 }
 
-fn is_input(address: &str) -> bool {
-    address.starts_with(['X', 'x'])
+/// By the name of the point, which begins with the name of its block.
+fn is_input(name: &str) -> bool {
+    name.starts_with('X')
+}
+
+fn points(machine: &Machine, project: &domore::Project) -> HashMap<Handle, String> {
+    // A project that declares impossible memory did not compile.
+    let map = domore::memory::Map::new(project);
+    let blocks = map.iter().flat_map(|map| map.blocks()).filter(|block| ["X", "Y"].contains(&block.name.as_str()));
+    let names = blocks.flat_map(|block| (0..block.count).map(|index| block.element_name(index)));
+    names.filter_map(|name| Some((machine.handle(&name).ok()?, name))).collect()
 }
 
 /// What contacts said and outputs got, per instruction.
@@ -111,6 +124,7 @@ impl Subject for DoMore {
             machine: self.machine.fork(),
             program: self.program.clone(),
             routines: Arc::clone(&self.routines),
+            points: Arc::clone(&self.points),
             forces: self.forces.clone(),
             enabled: self.enabled,
         })
@@ -185,21 +199,21 @@ impl Subject for DoMore {
         None
     }
 
-    fn force(&mut self, address: &str, state: Option<bool>) -> Result<(), String> {
+    fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {
         let handle = self.machine.handle(address).map_err(|error| error.why)?;
-        if handle.kind() != domore::memory::Kind::Bit || !address.starts_with(['X', 'x', 'Y', 'y']) {
+        let Some(name) = self.points.get(&handle).cloned() else {
             return Err(format!("{address} is no input or output bit: only those can be forced"));
-        }
+        };
         match state {
             Some(on) => {
                 self.machine.put_shown(handle, &self.machine.shown(handle))?;
-                self.forces.insert(address.to_owned(), (handle, on));
+                self.forces.insert(name.clone(), (handle, on));
             }
             None => {
-                self.forces.remove(address);
+                self.forces.remove(&name);
             }
         }
-        Ok(())
+        Ok(name)
     }
 
     fn enable_forces(&mut self, on: bool) -> Result<(), String> {

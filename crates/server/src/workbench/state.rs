@@ -14,7 +14,7 @@ use crate::plant::Plant;
 pub struct State {
     /// The machine.
     pub machine: Box<dyn Subject>,
-    /// Installed forces.
+    /// Installed forces, by the names of their points.
     pub forces: BTreeMap<String, bool>,
     /// What the controller is wired to.
     pub plant: Option<Plant>,
@@ -49,10 +49,10 @@ impl State {
         match change {
             Change::Write { address, value } => self.machine.controller_mut().write(address, value)?,
             Change::Force { address, state } => {
-                self.machine.force(address, *state)?;
+                let name = self.machine.force(address, *state)?;
                 match state {
-                    Some(on) => self.forces.insert(address.clone(), *on),
-                    None => self.forces.remove(address),
+                    Some(on) => self.forces.insert(name, *on),
+                    None => self.forces.remove(&name),
                 };
             }
             Change::EnableForces(on) => self.machine.enable_forces(*on)?,

@@ -1,5 +1,6 @@
 //! The machine on the workbench: one interface for every dialect.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -34,11 +35,11 @@ pub trait Subject: Send + Sync {
     fn power_cycle(&mut self);
     /// Where the fault stands that has stopped it: routine and rung.
     fn fault_site(&self) -> Option<(u16, u16)>;
-    /// Installs or removes a force.
+    /// Installs or removes a force; answers the one name that its point has, however the address spells it.
     ///
     /// # Errors
     /// The address cannot be forced.
-    fn force(&mut self, address: &str, state: Option<bool>) -> Result<(), String>;
+    fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String>;
     /// Enables or disables all forces.
     ///
     /// # Errors
@@ -55,6 +56,8 @@ pub struct Slc {
     machine: sim::Machine,
     /// Instructions of the rungs of each program file.
     shape: Arc<Vec<(u16, Vec<usize>)>>,
+    /// Input and output bits by their places: as the program spells them, or else as its data tables do.
+    points: Arc<HashMap<u32, String>>,
 }
 
 impl Slc {
@@ -62,8 +65,33 @@ impl Slc {
     pub fn new(machine: sim::Machine, image: &Image) -> Slc {
         let rungs = |file: &ladder::ProgramFile| file.rungs.iter().map(|rung| rung.instructions().count()).collect();
         let shape = image.ladder_files().map(|file| (file.number, rungs(file))).collect();
-        Slc { machine, shape: Arc::new(shape) }
+        let points = Arc::new(points(&machine, image));
+        Slc { machine, shape: Arc::new(shape), points }
     }
+}
+
+fn points(machine: &sim::Machine, image: &Image) -> HashMap<u32, String> {
+    let mut points = HashMap::new();
+    let mut name = |address: &Address| {
+        if address.file_type.has_slots()
+            && let Ok((place, sim::Kind::Bit)) = machine.place(address)
+        {
+            points.entry(place).or_insert_with(|| address.to_string());
+        }
+    };
+    let rungs = image.ladder_files().flat_map(|file| &file.rungs);
+    rungs
+        .flat_map(|rung| rung.instructions())
+        .flat_map(|it| &it.operands)
+        .filter_map(ladder::Operand::address)
+        .for_each(&mut name);
+    for file in image.data_files.iter().filter(|file| file.file_type.has_slots()) {
+        for word in 0..u16::try_from(file.words.len()).unwrap_or(u16::MAX) {
+            let Some(word) = image.io.address_of(file.file_type, word) else { continue };
+            (0..16).for_each(|bit| name(&word.clone().with_bit(bit)));
+        }
+    }
+    points
 }
 
 impl Subject for Slc {
@@ -76,7 +104,7 @@ impl Subject for Slc {
     }
 
     fn fork(&self) -> Box<dyn Subject> {
-        Box::new(Slc { machine: self.machine.fork(), shape: Arc::clone(&self.shape) })
+        Box::new(Slc { machine: self.machine.fork(), shape: Arc::clone(&self.shape), points: Arc::clone(&self.points) })
     }
 
     fn flow(&self) -> Flow {
@@ -122,10 +150,11 @@ impl Subject for Slc {
         self.machine.fault().map(|fault| (fault.file, fault.rung))
     }
 
-    fn force(&mut self, address: &str, state: Option<bool>) -> Result<(), String> {
-        let place = Address::parse(address).map_err(|why| why.to_string())?;
-        match self.machine.force(&place, state) {
-            true => Ok(()),
+    fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {
+        let parsed = Address::parse(address).map_err(|why| why.to_string())?;
+        let name = self.machine.place(&parsed).ok().and_then(|(place, _)| self.points.get(&place));
+        match self.machine.force(&parsed, state) {
+            true => Ok(name.cloned().unwrap_or_else(|| parsed.to_string())),
             false => Err(format!("{address} is no input or output bit: only those can be forced")),
         }
     }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses what it needs")]
 
+pub(crate) mod wire;
+
 use ladder::{Family, Image, Value};
 use server::workbench::{Slc, Workbench};
 
