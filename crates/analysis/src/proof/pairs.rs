@@ -369,6 +369,15 @@ impl Pairs {
         None
     }
 
+    /// The first difference in data a stop left; outputs are off then, whatever their words hold.
+    pub(crate) fn left<B: Side>(&self, a: &Slc, b: &B) -> Option<Mismatch> {
+        self.words.iter().find_map(|word| {
+            let span = self.spans.get(word.span as usize).filter(|span| span.file_type != FileType::O)?;
+            let differs = (a.word(word.a) ^ b.word(word.b)) & word.mask;
+            (differs != 0).then(|| mismatch(span, word, differs, a, b)).flatten()
+        })
+    }
+
     fn in_run<B: Side>(&self, run: &Run, a: &Slc, b: &B) -> Option<Mismatch> {
         let words = self.words.get(run.first..run.first + run.words)?;
         words.iter().find_map(|word| {
