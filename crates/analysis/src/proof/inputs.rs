@@ -126,6 +126,9 @@ impl<T: Clone> Inputs<T> {
                 let mut values = edges(Kind::Word);
                 values.extend(compared.get(&at).into_iter().flatten());
                 values.extend([0x7FFE, 0x8001]);
+                // Around the preset: done begins at equal values.
+                let preset = a.word(at - 16);
+                values.extend([preset.wrapping_sub(1), preset, preset.wrapping_add(1)].map(u32::from));
                 let other = pairs.other(at, Kind::Word);
                 inputs.add(a, b, (text, other), (at, Kind::Word), values, true, false);
             }
