@@ -1,5 +1,6 @@
 //! The run: both machines scan by scan, with inputs that lead to what was not seen yet.
 
+use std::collections::HashSet;
 use std::time::Duration;
 
 use super::goals::{Goal, Goals};
@@ -23,6 +24,17 @@ pub(super) struct Entry<B> {
     depth: usize,
     /// How often it was gone on from.
     used: u32,
+}
+
+/// How a goal was reached for the first time.
+#[derive(Clone)]
+pub(super) struct Recipe {
+    pub(super) goal: usize,
+    /// The state it began from.
+    pub(super) from: usize,
+    /// Scans up to the one that reached it, and that one.
+    pub(super) before: Tape,
+    pub(super) last: Tape,
 }
 
 /// Everything a run works on.
@@ -64,9 +76,13 @@ pub(crate) struct Campaign<'c, B: Side> {
     /// States before something that comes with time, by number in the corpus.
     pub(super) eves: Vec<usize>,
     /// Goals at instructions with words that are inputs.
-    pub(super) with_words: Vec<usize>,
-    /// States kept in which each of the timers is timing.
-    timing: Vec<u8>,
+    with_words: Vec<usize>,
+    /// How such goals were reached.
+    pub(super) recipes: Vec<Recipe>,
+    /// Words that hold bits the program writes, and which.
+    flags: Vec<(u32, u16)>,
+    /// What these were in states seen so far, hashed.
+    met: HashSet<u64>,
     /// A machine to look ahead with.
     pub(super) probe: Slc,
     quiet: u64,
@@ -86,8 +102,10 @@ const FIRST_ARGUMENT: u64 = 8;
 const DEEPEST: usize = 30_000;
 /// Times before a scan that are tried, in milliseconds.
 pub(super) const PACES: [u32; 5] = [1, 7, 10, 13, 50];
-/// States kept for each timer that is timing.
-const MOST_TIMING: u8 = 4;
+/// Scans to an instruction that are repeated.
+const LONGEST_RECIPE: usize = 2500;
+/// States kept because their bits are new.
+const MOST_MET: usize = 800;
 /// TT of the flags of a timer.
 pub(super) const TIMING: u16 = 0x4000;
 /// Longest time before a scan beside a timed interrupt, in microseconds: the shortest period there is.
@@ -107,7 +125,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         let probe = both.a.fork();
         let words = |goal: &Goal| goal.impossible.is_none() && !solver.words(goal, &both.a).is_empty();
         let with_words = (0..).zip(&goals.all).filter(|(_, goal)| words(goal)).map(|(index, _)| index).collect();
-        let timing = vec![0; presets.len()];
+        let flags = solver.flags();
         Campaign {
             seen,
             both,
@@ -136,7 +154,9 @@ impl<'c, B: Side> Campaign<'c, B> {
             short,
             eves: Vec::new(),
             with_words,
-            timing,
+            recipes: Vec::new(),
+            flags,
+            met: HashSet::new(),
             probe,
             quiet: 0,
             looks: false,
@@ -169,12 +189,12 @@ impl<'c, B: Side> Campaign<'c, B> {
             self.begin();
             match round % 8 {
                 _ if round % 24 == 6 => self.reach_boundary(),
-                _ if round % 24 == 15 => self.exercise(),
+                _ if matches!(round % 24, 13 | 15 | 21) => self.exercise(),
                 0..3 => self.aim(),
                 3 if self.random.chance(2, 3) => self.reach_preset(),
                 3 => self.wait_long(),
                 4 => self.change_mode(),
-                5 if round % 1024 == 5 => self.wait_days(),
+                5 if round % 384 == 5 => self.wait_days(),
                 5 => self.steady(),
                 _ => self.wander(),
             }
@@ -302,37 +322,53 @@ impl<'c, B: Side> Campaign<'c, B> {
                 None => self.outside += 1,
             }
         }
-        if self.seen.take_fresh() | !self.goals.fresh.is_empty() | self.times_anew() {
+        for goal in &self.goals.fresh {
+            let goal = *goal as usize;
+            if self.with_words.contains(&goal) && self.tape.len() <= LONGEST_RECIPE {
+                let (before, last) = (self.tape.first(last), self.tape.rest(last));
+                self.recipes.push(Recipe { goal, from: self.from, before, last });
+            }
+        }
+        let fresh = self.seen.take_fresh() | !self.goals.fresh.is_empty();
+        if fresh {
             self.quiet = 0;
+        }
+        if self.is_new() || fresh {
             self.keep();
         }
     }
 
-    /// A timer is timing of which few such states are kept.
-    fn times_anew(&mut self) -> bool {
-        let mut anew = false;
-        if self.scans.is_multiple_of(8) {
-            for ((preset, _), kept) in self.presets.iter().zip(&mut self.timing) {
-                if *kept < MOST_TIMING && self.both.a.word(preset - 16) & TIMING != 0 {
-                    *kept += 1;
-                    anew = true;
-                }
-            }
+    /// The bits the program writes have not been seen like this, and not too many such states are kept.
+    fn is_new(&mut self) -> bool {
+        if self.met.len() >= MOST_MET {
+            return false;
         }
-        anew
+        let data = self.both.a.machine.data();
+        let word = |(word, mask): &(u32, u16)| u64::from(data.get(*word as usize).copied().unwrap_or(0) & mask);
+        let hash = self.flags.iter().fold(0u64, |hash, flag| {
+            let mixed = (hash ^ word(flag)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            mixed ^ mixed >> 29
+        });
+        self.met.insert(hash)
     }
 
     /// Goes on from a state of this kind, if one is kept.
     pub(super) fn begin_where(&mut self, fits: impl Fn(&Slc) -> bool) {
         let found: Vec<usize> = (0..).zip(&self.corpus).filter(|(_, it)| fits(&it.both.a)).map(|(at, _)| at).collect();
-        let Some(index) = self.random.pick(&found).copied() else { return };
-        if let Some(entry) = self.corpus.get_mut(index) {
-            entry.used += 1;
-            self.both.copy_from(&entry.both);
+        if let Some(index) = self.random.pick(&found).copied() {
+            self.begin_at(index);
         }
+    }
+
+    /// Goes on from a kept state; `false`: there is no such one.
+    pub(super) fn begin_at(&mut self, index: usize) -> bool {
+        let Some(entry) = self.corpus.get_mut(index) else { return false };
+        entry.used += 1;
+        self.both.copy_from(&entry.both);
         self.from = index;
         self.tape.clear();
         self.pending.clear();
+        true
     }
 
     /// All scans from power-up to now.

@@ -165,6 +165,23 @@ impl<'a> Solver<'a> {
         search.plan
     }
 
+    /// What the numbers of the instruction of a goal are now.
+    pub(crate) fn numbers(&self, goal: &Goal, a: &Slc) -> Vec<i64> {
+        let location = goal.location;
+        let found = self.find(location.file, location.rung, location.instruction);
+        let operands = found.iter().flat_map(|it| &it.operands);
+        operands.filter_map(|operand| Source::of(operand, a)).map(|source| source.value(a)).collect()
+    }
+
+    /// Words that hold bits the program writes, and which: what tells its states apart.
+    pub(crate) fn flags(&self) -> Vec<(u32, u16)> {
+        let mut flags = std::collections::BTreeMap::<u32, u16>::new();
+        for at in self.bits.keys() {
+            *flags.entry(at >> 4).or_default() |= 1 << (at & 15);
+        }
+        flags.into_iter().collect()
+    }
+
     /// Inputs among the words of the instruction of a goal.
     pub(crate) fn words(&self, goal: &Goal, a: &Slc) -> Vec<usize> {
         let location = goal.location;

@@ -52,6 +52,17 @@ impl<B: Side> Campaign<'_, B> {
         }
     }
 
+    /// A value at an end of the range of an input, or a little inside it; sometimes any value.
+    fn some_end(&mut self, index: usize) -> u32 {
+        let ends: &[u32] = match self.inputs.all.get(index) {
+            Some(input) if !input.bounded && input.kind == Kind::Word => &[0x7FFF, 0x7FFE, 0x8000, 0x8001, 0xFFFF],
+            Some(input) if !input.bounded && input.kind == Kind::Long => &[0x7FFF_FFFF, 0x7FFF_FFFE, 1 << 31, u32::MAX],
+            _ => &[],
+        };
+        let end = self.random.pick(ends).copied().filter(|_| self.random.chance(3, 4));
+        end.unwrap_or_else(|| self.some_value(index))
+    }
+
     /// Every input on its own: both edges of bits, every value of words.
     pub(super) fn each_input(&mut self) {
         for index in 0..self.inputs.all.len() {
@@ -125,22 +136,55 @@ impl<B: Side> Campaign<'_, B> {
         }
     }
 
-    /// Towards an instruction again, reached or not, with values at the ends of their range in its words.
+    /// An instruction is executed again as when it was first, with values at the ends of their range in its words.
     pub(super) fn exercise(&mut self) {
-        let goals = &self.with_words;
-        let Some(goal) = self.random.pick(goals).and_then(|index| self.goals.all.get(*index)).cloned() else {
-            return self.wander();
-        };
-        let words = self.solver.words(&goal, &self.both.a);
-        for _ in 0..2 {
-            let plan = self.solver.plan(&goal, &self.both.a, &mut self.random);
-            for index in &words {
-                let value = self.some_value(*index);
-                self.pending.push((u16::try_from(*index).unwrap_or(u16::MAX), value));
-            }
-            self.carry_out(&plan);
+        let index = self.random.below(self.recipes.len());
+        let Some(mut recipe) = self.recipes.get(index).cloned() else { return self.wander() };
+        if !self.begin_at(recipe.from) {
+            return;
         }
-        self.wander();
+        if recipe.before.len() > 0 {
+            // Up to the scan before, once: the state is kept.
+            for (head, sets) in recipe.before.iter() {
+                self.pending.extend_from_slice(sets);
+                self.scan(head.program_run, head.dt);
+                if !self.goes_on() {
+                    return;
+                }
+            }
+            recipe.from = self.kept();
+            recipe.before.clear();
+            self.keep();
+            if self.kept() > recipe.from
+                && let Some(place) = self.recipes.get_mut(index)
+            {
+                place.clone_from(&recipe);
+            }
+        }
+        let Some(goal) = self.goals.all.get(recipe.goal) else { return };
+        let (words, numbers) = (self.solver.words(goal, &self.both.a), self.solver.numbers(goal, &self.both.a));
+        for index in words {
+            let mut value = self.some_end(index);
+            // So that a sum or difference with another number ends there, or one beside it.
+            if self.random.chance(1, 2)
+                && let Some(number) = self.random.pick(&numbers).map(|number| *number as u32)
+            {
+                value = if self.random.chance(2, 3) { value.wrapping_sub(number) } else { value.wrapping_add(number) };
+                value = value.wrapping_add(self.random.below(2) as u32);
+            }
+            if self.inputs.all.get(index).is_some_and(|input| input.bounded && !input.values.contains(&value)) {
+                continue;
+            }
+            self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+        }
+        for (head, sets) in recipe.last.iter() {
+            self.pending.extend_from_slice(sets);
+            self.scan(head.program_run, head.dt);
+        }
+        if self.open() && self.both.a.stopped().is_some() && self.both.b.stopped().is_some() {
+            self.scan(true, 0);
+        }
+        self.scans_of(2);
     }
 
     fn is_reached(&self, wanted: &super::goals::Goal) -> bool {
@@ -421,5 +465,10 @@ impl<B: Side> Campaign<'_, B> {
             let dt = if self.random.chance(1, 5) { self.pace } else { DAY_PACE };
             self.scan(false, dt);
         }
+        if self.eves.len() < MOST_EVES && self.goes_on() {
+            self.eves.push(self.kept());
+            self.keep();
+        }
+        self.wander();
     }
 }

@@ -68,6 +68,13 @@ impl Tape {
         tape
     }
 
+    /// The scans behind the first ones.
+    pub(crate) fn rest(&self, scans: usize) -> Tape {
+        let mut tape = Tape::default();
+        tape.extend(self.iter().skip(scans));
+        tape
+    }
+
     /// Changes of inputs.
     pub(crate) fn changes(&self) -> usize {
         self.sets.len()
