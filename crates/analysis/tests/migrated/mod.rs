@@ -75,18 +75,23 @@ pub(crate) fn proven(with_corpus: bool) -> Vec<Migrated> {
     paths.iter().map(|path| Migrated::of(path)).collect()
 }
 
-const CORPUS: [&str; 13] = [
+const CORPUS: [&str; 18] = [
     "PLC_traffic_light_rtc/TRAFFIC_LIGHT_6TON_orig.RSS",
     "PLC_traffic_light_rtc/traffic_light_6TON.RSS",
     "PLC_traffic_light_rtc/traffic_light_rtc.RSS",
     "PLC/TRAFFIC_LIGHT.RSS",
+    "PLC/TRAFFIC_LIGHT_BAK017.RSS",
     "PLC/TRAFFIC_LIGHT_STOP.RSS",
+    "PLC/TRAFFIC_LIGHT_STOP_BAK015.RSS",
     "PLC/TRAFFIC_LIGHT_SEQUENCER.RSS",
+    "PLC/TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS",
     "PLC_2s_lamp_flash/single_timer.RSS",
     "PLC_2s_lamp_flash/cascading_timers.RSS",
     "PLC_2s_lamp_flash/free_running_clock_bit_14.RSS",
     "PLC_2s_lamp_flash/rtc_bit_1.RSS",
+    "PLC_2s_lamp_flash/sti_1000ms_live.RSS",
     "PLC_3_pump_sequencing/3_pump_sequencing.RSS",
     "PLC_reject_timing/lecky_demo.RSS",
     "PLC_reject_timing/lecky_demo_tof.RSS",
+    "PLC_reject_timing/lecky_demo_tof_loop.RSS",
 ];

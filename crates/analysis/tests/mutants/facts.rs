@@ -111,6 +111,32 @@ impl<'f> Facts<'f> {
         Ok(scan.memory)
     }
 
+    /// Memory after any later scan, and behind a rung each time it runs.
+    pub(crate) fn next_watched(&mut self, place: (usize, usize)) -> Result<(After, Vec<After>), Why> {
+        let own = HashMap::new();
+        let start = Between { first: &self.first, lines: &self.lines, own: &own };
+        let mut scan = Scan::new(&self.model, None, &start, (&mut self.gates, &mut self.outside))?;
+        scan.watched = Some(place);
+        scan.run(&self.begin)?;
+        Ok((scan.memory, scan.behind))
+    }
+
+    /// Memory after any later scan of a program with a change, met with the unchanged one behind the change.
+    pub(crate) fn next_changed(
+        &mut self,
+        change: Change<'_>,
+        own: &HashMap<u32, Line>,
+        behind: &[After],
+        given: &[Line],
+    ) -> Result<After, Why> {
+        let start = Between { first: &self.first, lines: &self.lines, own };
+        let mut scan = Scan::new(&self.model, Some(change), &start, (&mut self.gates, &mut self.outside))?;
+        scan.watched = Some(change.place);
+        scan.peer = Some((behind, given));
+        scan.run(&self.begin)?;
+        Ok(scan.memory)
+    }
+
     /// A bit between two scans.
     pub(crate) fn before(&self, bit: u32) -> Line {
         Between { first: &self.first, lines: &self.lines, own: &HashMap::new() }.line(bit)
@@ -131,7 +157,9 @@ impl<'f> Facts<'f> {
                 Kind::Long => 32,
                 _ => return Err("reals and texts are not followed".to_owned()),
             };
-            let value: Word = (0..bits).map(|_| self.gates.input()).collect();
+            // Bits that no value of the range has are off.
+            let used = driven.range.map_or(bits, |(_, most)| bits.min(u32::BITS - most.leading_zeros()));
+            let value: Word = (0..bits).map(|bit| if bit < used { self.gates.input() } else { OFF }).collect();
             let changes = self.gates.input();
             if let Some((least, most)) = driven.range {
                 let number = of_bits(value.clone(), false);

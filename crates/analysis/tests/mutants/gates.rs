@@ -180,17 +180,24 @@ impl Gates {
 
     /// All nodes from the inputs of the solver's last answer.
     fn values(&self) -> Vec<bool> {
+        self.with(&|node| {
+            self.variables.get(&node).is_some_and(|variable| self.solver.value_var(*variable) == lbool::TRUE)
+        })
+    }
+
+    /// All nodes with these inputs; the others are off.
+    pub(crate) fn evaluate(&self, inputs: &HashMap<Line, bool>) -> Vec<bool> {
+        self.with(&|node| inputs.get(&(node << 1)).copied().unwrap_or(false))
+    }
+
+    fn with(&self, input: &dyn Fn(u32) -> bool) -> Vec<bool> {
         let mut values = vec![false; self.nodes.len()];
-        for (node, sides) in self.nodes.iter().enumerate() {
-            values[node] = match sides {
-                None => self
-                    .variables
-                    .get(&(node as u32))
-                    .is_some_and(|variable| self.solver.value_var(*variable) == lbool::TRUE),
+        for (node, sides) in (0u32..).zip(&self.nodes).skip(1) {
+            values[node as usize] = match sides {
+                None => input(node),
                 Some((a, b)) => value(&values, *a) && value(&values, *b),
             };
         }
-        values[0] = false;
         values
     }
 }

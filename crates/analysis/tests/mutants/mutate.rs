@@ -2,6 +2,8 @@
 
 use domore::{Instruction, Part, Project, Rung};
 
+use super::scan::Change;
+
 /// What was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Kind {
@@ -34,6 +36,16 @@ pub(crate) struct Mutant {
     pub(crate) project: Project,
 }
 
+impl Mutant {
+    /// What stands in the place of which rung.
+    pub(crate) fn change(&self) -> Change<'_> {
+        let (block, rung, instruction) = self.place;
+        let code = self.project.code_blocks().nth(block);
+        let changed = code.and_then(|code| code.rungs.get(rung)).filter(|_| instruction.is_some());
+        Change { place: (block, rung), rung: changed }
+    }
+}
+
 /// All of them, in the order of the text.
 pub(crate) fn all(project: &Project) -> Vec<Mutant> {
     let mut mutants = Vec::new();
@@ -59,9 +71,9 @@ pub(crate) fn all(project: &Project) -> Vec<Mutant> {
     mutants
 }
 
-type Change = (Kind, Option<usize>, String, Option<Rung>);
+type Changed = (Kind, Option<usize>, String, Option<Rung>);
 
-fn of_rung(rung: &Rung) -> Vec<Change> {
+fn of_rung(rung: &Rung) -> Vec<Changed> {
     let mut changes = Vec::new();
     let acts = rung.instructions.iter().any(|it| !matches!(it.mnemonic.as_str(), "NOP" | "RET" | "END"));
     if acts {

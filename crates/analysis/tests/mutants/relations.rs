@@ -218,6 +218,11 @@ impl Named {
     }
 }
 
+/// All bits of words a rung names.
+pub(crate) fn words_of(map: &Map, rung: &Rung) -> Vec<u32> {
+    Named::of(map, rung).words.into_iter().flat_map(Part::bits).collect()
+}
+
 /// All bits a rung names, alone or in words.
 pub(crate) fn bits_of(map: &Map, rung: &Rung) -> Vec<u32> {
     let named = Named::of(map, rung);

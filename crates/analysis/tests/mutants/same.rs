@@ -24,7 +24,7 @@ pub(crate) enum Same {
 }
 
 /// Steps of the solver for a question, where there is hope to find a difference yet and where there is none.
-const STEPS: [u64; 2] = [10_000, 200_000];
+const STEPS: [u64; 2] = [10_000, 150_000];
 
 /// Decides about the mutants of one program. What it has to know of the program is found when it is needed.
 pub(crate) struct Judge<'j> {
@@ -56,17 +56,14 @@ impl<'j> Judge<'j> {
                 return Same::Open(why);
             }
         }
-        let (block, rung, instruction) = mutant.place;
-        let code = mutant.project.code_blocks().nth(block);
-        let rung = code.and_then(|code| code.rungs.get(rung)).filter(|_| instruction.is_some());
-        let change = Change { place: (block, mutant.place.1), rung };
+        let change = mutant.change();
         facts.gates.patience = STEPS[usize::from(thorough)];
         let size = facts.gates.size();
         // Without relations first: they make a question longer.
         let mut answer = Same::Open(String::new());
-        for related in [false, true] {
-            if !matches!(answer, Same::Yes { .. }) && (!related || thorough) {
-                answer = decide(facts, &self.compared, change, related).unwrap_or_else(Same::Open);
+        for depth in [0, 1, 2] {
+            if !matches!(answer, Same::Yes { .. }) && (depth == 0 || thorough) {
+                answer = decide(facts, &self.compared, change, depth).unwrap_or_else(Same::Open);
                 facts.gates.forget(size);
                 facts.outside.forget(size);
             }
@@ -98,7 +95,9 @@ fn compared(scope: &Scope, facts: &Facts<'_>) -> HashSet<u32> {
     bits
 }
 
-fn decide(facts: &mut Facts<'_>, compared: &HashSet<u32>, change: Change<'_>, related: bool) -> Result<Same, Why> {
+fn decide(facts: &mut Facts<'_>, compared: &HashSet<u32>, change: Change<'_>, depth: usize) -> Result<Same, Why> {
+    // Without relations, with those of the rung, with those of what its words are computed from.
+    let related = depth > 0;
     // The first scan from power-up.
     let mut outside = Outside::default();
     let (ours, theirs) = (facts.first_scan(None, &mut outside)?, facts.first_scan(Some(change), &mut outside)?);
@@ -115,14 +114,16 @@ fn decide(facts: &mut Facts<'_>, compared: &HashSet<u32>, change: Change<'_>, re
     }
     // Every later one.
     let begun = theirs;
-    let ours = facts.next(None, &HashMap::new())?;
+    let (ours, behind) = facts.next_watched(change.place)?;
     let near: HashSet<u32> = [change, Change { rung: facts.model.rung(change.place, None), ..change }]
         .into_iter()
         .flat_map(|change| change.rung.map(|rung| bits_of(&facts.model.map, rung)).unwrap_or_default())
         .collect();
+    let near = if depth > 1 { facts.model.around(&near) } else { near };
     loop {
         let own: HashMap<u32, Line> = apart.iter().map(|bit| (*bit, facts.gates.input())).collect();
-        let theirs = facts.next(Some(change), &own)?;
+        let known = if related { facts.known_of(&|bit| near.contains(&bit)) } else { facts.given.clone() };
+        let theirs = facts.next_changed(change, &own, &behind, &known)?;
         let given = if related { theirs_too(facts, &begun, &own, &theirs, &near) } else { facts.given.clone() };
         let found = differing(facts, &ours, &theirs, &apart, Some(given.clone()))?;
         if found.is_empty() {

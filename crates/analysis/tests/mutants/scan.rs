@@ -2,7 +2,7 @@
 //!
 //! What it does not know it refuses; nothing is said about such a program then.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use domore::address::{Number, Operand, columns};
 use domore::instruction::{Effect, Flow, Join, Relation, Test, by_mnemonic};
@@ -10,7 +10,8 @@ use domore::math::Expression;
 use domore::memory::{Kind, Map, Num, Place, Resolved};
 use domore::{CodeBlock, CodeKind, Instruction, Project, Rung};
 
-use super::gates::{Gates, Line, OFF, ON};
+use super::gates::{Answer, Gates, Line, OFF, ON, value};
+use super::relations::words_of;
 use super::words::{Word, bit, constant, ends, fixed, of_bits, wrapped};
 
 /// Why a program is not followed.
@@ -18,11 +19,13 @@ pub(crate) type Why = String;
 
 /// State that has no place in memory stands behind it.
 const HIDDEN: u32 = 1 << 30;
-/// The program was halted in this scan.
+/// The program was halted in this scan. All bits from here on have no place in memory.
 pub(crate) const HALTED: u32 = HIDDEN;
 /// Elements an index may choose from.
 const MOST_CHOICES: i64 = 1024;
 const MOST_CALLS: usize = 16;
+/// Bits that are asked about one by one.
+const MOST_MET: usize = 300;
 
 /// A timer that was not enabled when it was processed last.
 fn fresh(timer: u32) -> u32 {
@@ -64,6 +67,21 @@ impl Outside {
     /// Forgets what was named behind so many gates.
     pub(crate) fn forget(&mut self, size: usize) {
         self.named.retain(|(_, on), word| on.iter().chain(&*word).all(|line| ((*line >> 1) as usize) < size));
+    }
+
+    /// The bits of a name, as far as there are any.
+    pub(crate) fn get(&self, key: &(String, Vec<Line>)) -> Option<&Word> {
+        self.named.get(key)
+    }
+
+    /// Gives a name its bits.
+    pub(crate) fn put(&mut self, name: &str, on: &[Line], word: Word) {
+        self.named.insert((name.to_owned(), on.to_vec()), word);
+    }
+
+    /// All names with their bits.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&(String, Vec<Line>), &Word)> {
+        self.named.iter()
     }
 
     /// So many bits from outside, the same ones for the same name.
@@ -122,6 +140,30 @@ impl<'m> Model<'m> {
         (0..self.timers.len() as u32).map(|timer| (fresh(timer), ON))
     }
 
+    /// The timers, each with the bit that its time was taken.
+    pub(crate) fn timed(&self) -> impl Iterator<Item = (u32, u32)> {
+        (0..self.timers.len() as u32).map(|timer| (moved(timer), timer))
+    }
+
+    /// Waves, counts and the clock, which come from outside: name, first bit, bits.
+    pub(crate) fn system(&self) -> Result<[(&'static str, u32, usize); 4], Why> {
+        let start = |name: &str| self.map.block(name).map(|block| block.start).ok_or("no system memory");
+        let (bits, words, date) = (start("ST")?, start("DST")?, start("SDT")?);
+        Ok([("waves", bits + 3, 3), ("scans", words, 64), ("state", words + 320, 32), ("date", date, 64)])
+    }
+
+    /// These bits with all words of the rungs that name one of them in a word.
+    pub(crate) fn around(&self, near: &HashSet<u32>) -> HashSet<u32> {
+        let mut all = near.clone();
+        for rung in self.blocks.iter().flat_map(|block| &block.rungs) {
+            let words = words_of(&self.map, rung);
+            if words.iter().any(|bit| near.contains(bit)) {
+                all.extend(words);
+            }
+        }
+        all
+    }
+
     /// What a bit is called.
     pub(crate) fn name(&self, bit: u32) -> String {
         let block = self
@@ -153,6 +195,9 @@ fn timers_of(rung: &Rung) -> usize {
     rung.instructions.iter().filter(|it| it.is("TMR")).count()
 }
 
+/// Memory of another program behind a rung, each time it ran, and what holds before the scan.
+type Peer<'s> = (&'s [HashMap<u32, Line>], &'s [Line]);
+
 /// A scan under way.
 pub(crate) struct Scan<'s, S: Start> {
     pub(crate) gates: &'s mut Gates,
@@ -162,6 +207,12 @@ pub(crate) struct Scan<'s, S: Start> {
     change: Option<Change<'s>>,
     pub(crate) memory: HashMap<u32, Line>,
     time: Word,
+    /// A rung behind which memory is looked at.
+    pub(crate) watched: Option<(usize, usize)>,
+    /// Memory behind it, each time it runs.
+    pub(crate) behind: Vec<HashMap<u32, Line>>,
+    /// The same of another program, and what holds before the scan: what cannot differ is taken for equal.
+    pub(crate) peer: Option<Peer<'s>>,
 }
 
 impl<'s, S: Start> Scan<'s, S> {
@@ -177,7 +228,18 @@ impl<'s, S: Start> Scan<'s, S> {
                 return Err("which timer is which is not clear".to_owned());
             }
         }
-        Ok(Scan { gates, outside, model, start, change, memory: HashMap::new(), time: constant(0) })
+        Ok(Scan {
+            gates,
+            outside,
+            model,
+            start,
+            change,
+            memory: HashMap::new(),
+            time: constant(0),
+            watched: None,
+            behind: Vec::new(),
+            peer: None,
+        })
     }
 
     /// The bit now.
@@ -265,16 +327,13 @@ impl<'s, S: Start> Scan<'s, S> {
         }
     }
 
-    /// System bits and words: the first scan, always, never; waves, counts and the clock are from outside.
+    /// System bits and words: the first scan, always, never; the others are from outside.
     fn system(&mut self, mode: Line) -> Result<(), Why> {
-        let start = |name: &str| self.model.map.block(name).map(|block| block.start).ok_or("no system memory");
-        let (bits, words, date) = (start("ST")?, start("DST")?, start("SDT")?);
+        let bits = self.model.map.block("ST").map(|block| block.start).ok_or("no system memory")?;
         for (number, line) in [(0, mode), (1, ON), (2, OFF)] {
             self.put(bits + number, line, ON);
         }
-        for (name, first, count) in
-            [("waves", bits + 3, 3), ("scans", words, 64), ("state", words + 320, 32), ("date", date, 64)]
-        {
+        for (name, first, count) in self.model.system()? {
             let word = self.outside.word(self.gates, name, &[], count);
             for (index, line) in word.iter().enumerate() {
                 self.put(first + index as u32, *line, ON);
@@ -288,13 +347,50 @@ impl<'s, S: Start> Scan<'s, S> {
             return Err("calls are nested too deeply".to_owned());
         }
         for number in 0..self.model.blocks[block].rungs.len() {
-            let Some(rung) = self.model.rung((block, number), self.change) else { continue };
-            if rung.instructions.iter().any(|it| it.is("RET")) {
-                return if rung.instructions.len() == 1 { Ok(()) } else { Err("RET in a rung".to_owned()) };
+            if let Some(rung) = self.model.rung((block, number), self.change) {
+                if rung.instructions.iter().any(|it| it.is("RET")) {
+                    return if rung.instructions.len() == 1 { Ok(()) } else { Err("RET in a rung".to_owned()) };
+                }
+                self.one(rung, (block, number), power, depth)?;
             }
-            self.one(rung, (block, number), power, depth)?;
+            if self.watched == Some((block, number)) {
+                self.meet();
+                self.behind.push(self.memory.clone());
+            }
         }
         Ok(())
+    }
+
+    /// Takes bits for those of the other program behind the same rung where they cannot differ, so that what
+    /// follows is the same logic.
+    fn meet(&mut self) {
+        let Some((peer, given)) = self.peer else { return };
+        let Some(peer) = peer.get(self.behind.len()) else { return };
+        let mut differences = Vec::new();
+        for (bit, line) in peer {
+            let own = self.bit(*bit);
+            if own != *line {
+                differences.push((*bit, *line, self.gates.xor(own, *line)));
+            }
+        }
+        differences.sort_unstable();
+        let any = differences.iter().fold(OFF, |any, row| self.gates.or(any, row.2));
+        let mut differ = match self.gates.ask(any, given) {
+            Answer::Never => Vec::new(),
+            Answer::Values(values) => differences.iter().filter(|row| value(&values, row.2)).map(|row| row.0).collect(),
+            Answer::Open => return,
+        };
+        if differ.is_empty() || differences.len() <= MOST_MET {
+            for (bit, line, differs) in differences {
+                let open = !differ.is_empty() && !differ.contains(&bit);
+                if open && !matches!(self.gates.ask(differs, given), Answer::Never) {
+                    differ.push(bit);
+                }
+                if !differ.contains(&bit) {
+                    self.memory.insert(bit, line);
+                }
+            }
+        }
     }
 
     fn one(&mut self, rung: &Rung, place: (usize, usize), active: Line, depth: usize) -> Result<(), Why> {
