@@ -65,6 +65,25 @@ async fn other_origins_and_names_are_kept_out() {
     for origin in ["http://plant.example", "null", "https://127.0.0.1", "http://127.0.0.1"] {
         assert_eq!(status(format!("Host: {at}\r\nOrigin: {origin}\r\n")).await, 403, "{origin}");
     }
+    for host in ["localhost.", "127.1", "2130706433", "0.0.0.0", "user@127.0.0.1", "127.0.0.1.plant.example", ""] {
+        assert_eq!(status(format!("Host: {host}:{}\r\n", at.port())).await, 403, "{host}");
+    }
+    assert_eq!(status("Host: 127.0.0.1\r\n".to_owned()).await, 403, "another port");
+    // The first line can name a server as well.
+    let line =
+        async |server: &str| ask(at, &format!("GET http://{server}/api/state"), &format!("Host: {at}\r\n"), "").await.0;
+    assert_eq!((line(&at.to_string()).await, line("plant.example").await), (200, 403));
+    // What browsers say about where a request comes from.
+    let fetched = async |site: &str, mode: &str, to: &str| {
+        let said = format!("Sec-Fetch-Site: {site}\r\nSec-Fetch-Mode: {mode}\r\nSec-Fetch-Dest: {to}\r\n");
+        status(format!("Host: {at}\r\n{said}")).await
+    };
+    assert_eq!(fetched("same-origin", "cors", "empty").await, 200);
+    assert_eq!(fetched("none", "navigate", "document").await, 200);
+    assert_eq!(fetched("cross-site", "navigate", "document").await, 200, "a link");
+    assert_eq!(fetched("cross-site", "no-cors", "image").await, 403);
+    assert_eq!(fetched("cross-site", "navigate", "iframe").await, 403);
+    assert_eq!(fetched("same-site", "no-cors", "script").await, 403);
     let (_, head, _) = ask(at, "OPTIONS /api/write", &format!("Host: {at}\r\n"), "").await;
     assert!(!head.contains("access-control"), "{head}");
     let upgrade = format!(
@@ -83,6 +102,14 @@ async fn a_token_opens_the_door_and_nothing_else() {
     let host = format!("Host: {at}\r\n");
     assert_eq!(ask(at, "GET /", &host, "").await.0, 401);
     assert_eq!(ask(at, "GET /?token=0123456789abcdee", &host, "").await.0, 401);
+    let bearer = format!("{host}Authorization: Bearer 0123456789abcdef\r\n");
+    let described = ask(at, "GET /api/openapi.json", &bearer, "").await.2;
+    let described: Value = serde_json::from_str(&described).expect("JSON");
+    for path in described["paths"].as_object().expect("paths").keys() {
+        let (status, head, body) = ask(at, &format!("GET {path}"), &host, "").await;
+        assert_eq!(status, 401, "{path}");
+        assert!(!format!("{head}{body}").contains("0123456789abcdef"), "{path}: {head}{body}");
+    }
     let (status, head, _) = ask(at, "GET /?token=0123456789abcdef", &host, "").await;
     assert!(status == 303 && head.contains("httponly; samesite=strict"), "{head}");
     assert_eq!(ask(at, "GET /", &format!("{host}Cookie: a=b; rungs-token=0123456789abcdef\r\n"), "").await.0, 200);
@@ -191,6 +218,41 @@ async fn one_address_cannot_ask_without_end() {
     }
 }
 
+/// Requests that are no proper HTTP, or say more than one thing, are refused and harm nobody.
+#[tokio::test]
+async fn malformed_requests_are_refused() {
+    let at = serve(Access::default()).await;
+    let typed = format!("Host: {at}\r\nConnection: close\r\nContent-Type: application/json\r\n");
+    let write = "POST /api/write HTTP/1.1\r\n";
+    for (request, status) in [
+        (format!("{write}{typed}Content-Length: 2\r\nContent-Length: 3\r\n\r\n{{}} "), "400"),
+        (format!("{write}{typed}Transfer-Encoding: chunked\r\n\r\nzz\r\n{{}}\r\n0\r\n\r\n"), "400"),
+        (format!("{write}{typed}Transfer-Encoding: gzip\r\n\r\n{{}}"), "400"),
+        (format!("{write}{typed}Content-Length: 999999999999\r\n\r\n"), "413"),
+        (format!("{write}{typed}Content-Length: 100000\r\n\r\n{}", "[".repeat(100_000)), "422"),
+        (format!("GET /api/search?q={} HTTP/1.1\r\n{typed}\r\n", "a".repeat(20_000)), "400"),
+        (format!("GET /api/search?q={} HTTP/1.1\r\n{typed}\r\n", "a".repeat(60_000)), "431"),
+        (format!("GET /api/state HTTP/1.1\r\n{typed}{}\r\n", "X-A: b\r\n".repeat(100)), "431"),
+        (format!("GET /api/state HTTP/1.1\r\n{typed}X-A: b\r\n c\r\n\r\n"), "400"),
+        (format!("GET /assets/../api.js HTTP/1.1\r\n{typed}\r\n"), "404"),
+        (format!("GET /assets/%2e%2e%2fapi.js HTTP/1.1\r\n{typed}\r\n"), "404"),
+        (format!("GET //api/state HTTP/1.1\r\n{typed}\r\n"), "404"),
+        (format!("GET /api/data/%ff HTTP/1.1\r\n{typed}\r\n"), "400"),
+        (format!("CONNECT plant.example:80 HTTP/1.1\r\n{typed}\r\n"), "403"),
+        ("GET /api/state HTTP/1.0\r\n\r\n".to_owned(), "403"),
+        ("\u{16}\u{3}\u{1}\u{2}\r\n\r\n".to_owned(), "400"),
+    ] {
+        let mut stream = TcpStream::connect(at).await.expect("listens");
+        // A refused request may not be read to its end.
+        let _ = stream.write_all(request.as_bytes()).await;
+        let mut answer = vec![0; 12];
+        let _ = stream.read_exact(&mut answer).await;
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        assert_eq!(answer.get(9..12), Some(status), "{answer} to {request:.200}");
+    }
+    assert_eq!(get(at, "/api/state").await.0, 200);
+}
+
 #[tokio::test]
 async fn pages_load_nothing_from_elsewhere() {
     let at = serve(Access::default()).await;
@@ -198,6 +260,10 @@ async fn pages_load_nothing_from_elsewhere() {
     let (status, head, page) = ask(at, "GET /", &host, "").await;
     assert_eq!(status, 200);
     assert!(head.contains("content-security-policy: default-src 'none'") && head.contains("frame-ancestors 'none'"));
+    assert!(!head.contains("unsafe-") && !head.contains("access-control-"), "{head}");
+    for line in ["x-content-type-options: nosniff", "x-frame-options: deny", "referrer-policy: no-referrer"] {
+        assert!(head.contains(line), "{line}: {head}");
+    }
     let named: Vec<&str> = page.split(['"', '\'']).filter(|part| part.starts_with("/assets/")).collect();
     assert!(named.len() >= 3, "{named:?}");
     for path in named {

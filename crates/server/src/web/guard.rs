@@ -14,7 +14,7 @@ use axum::body::{Body, HttpBody, to_bytes};
 use axum::extract::{ConnectInfo, Request, State};
 use axum::http::header::{AUTHORIZATION, CACHE_CONTROL, CONTENT_SECURITY_POLICY, COOKIE, HOST, LOCATION, ORIGIN};
 use axum::http::header::{REFERRER_POLICY, SET_COOKIE, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS};
-use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, Uri};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use http_body_util::LengthLimitError;
@@ -56,6 +56,11 @@ impl Guard {
             hosts.extend([format!("localhost:{port}"), format!("127.0.0.1:{port}"), format!("[::1]:{port}")]);
         }
         hosts.push(bound.to_string());
+        if port == 80 {
+            // Browsers leave the usual port out.
+            let short: Vec<String> = hosts.iter().filter_map(|it| Some(it.strip_suffix(":80")?.to_owned())).collect();
+            hosts.extend(short);
+        }
         Guard { hosts, token, body, counts: Mutex::default() }
     }
 
@@ -64,13 +69,22 @@ impl Guard {
         self.token.is_some()
     }
 
-    fn check(&self, request: &Request, from: IpAddr) -> Result<(), Problem> {
+    fn check(&self, request: &Request) -> Result<(), Problem> {
         let headers = request.headers();
-        self.count(from)?;
         let host =
             single(headers, &HOST).ok_or_else(|| Problem::forbidden("expected one Host, found none or several"))?;
         if !self.any_host() && !self.hosts.iter().any(|own| own.eq_ignore_ascii_case(host)) {
             return Err(Problem::forbidden(format!("expected Host to be one of {}", self.hosts.join(", "))));
+        }
+        // Whoever names a server in the first line too must name the same one.
+        if request.uri().authority().is_some_and(|named| !named.as_str().eq_ignore_ascii_case(host)) {
+            return Err(Problem::forbidden("expected the address asked for to name the same server as Host"));
+        }
+        // Browsers say where a request comes from. Pages of others may link to this one and nothing else.
+        let fetch = |name: &str| headers.get(name).map(|value| value.as_bytes());
+        let linked = fetch("sec-fetch-mode") == Some(b"navigate") && fetch("sec-fetch-dest") == Some(b"document");
+        if fetch("sec-fetch-site").is_some_and(|site| site != b"same-origin" && site != b"none") && !linked {
+            return Err(Problem::forbidden("pages of other origins may not use this server"));
         }
         if headers.contains_key(ORIGIN) {
             let origin = single(headers, &ORIGIN).and_then(|origin| origin.strip_prefix("http://"));
@@ -127,9 +141,10 @@ pub(super) async fn guard(
     request: Request,
     next: Next,
 ) -> Response {
-    let mut response = match guard.signing_in(request.uri()) {
-        Some(response) => response,
-        None => match guard.check(&request, from.ip()) {
+    let mut response = match (guard.count(from.ip()), guard.signing_in(request.uri())) {
+        (Err(problem), _) => problem.into_response(),
+        (Ok(()), Some(response)) => response,
+        (Ok(()), None) => match guard.check(&request) {
             Ok(()) => match arrived(request, guard.body).await {
                 Ok(request) => next.run(request).await,
                 Err(problem) => problem.into_response(),
@@ -143,6 +158,8 @@ pub(super) async fn guard(
         (X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (X_FRAME_OPTIONS, "DENY"),
         (REFERRER_POLICY, "no-referrer"),
+        (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+        (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
         (CACHE_CONTROL, "no-store"),
     ] {
         headers.entry(name).or_insert(HeaderValue::from_static(value));
@@ -180,7 +197,7 @@ pub(super) async fn only_look(request: Request, next: Next) -> Response {
 }
 
 /// A header that stands once.
-fn single<'h>(headers: &'h HeaderMap, name: &axum::http::HeaderName) -> Option<&'h str> {
+fn single<'h>(headers: &'h HeaderMap, name: &HeaderName) -> Option<&'h str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;
     values.next().is_none().then_some(value)
