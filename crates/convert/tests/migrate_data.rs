@@ -678,6 +678,6 @@ fn shifts_and_sequencers_step_on() {
             "XIC B3:2/0 FFL N7:3 #N11:0 R6:0 5 0\nXIC B3:2/1 FFU #N11:0 N7:4 R6:0 5 0",
             "XIC B3:2/0 LFL N7:3 #N11:0 R6:0 5 0\nXIC B3:2/1 LFU #N11:0 N7:4 R6:0 5 0",
         ],
-        Verdict::Condition,
+        Verdict::Exact,
     );
 }

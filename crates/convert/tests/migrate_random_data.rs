@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 use std::time::Duration;
 
 use convert::migrate::{self, Options, Verdict};
+use domore::choices::{Choice, Choices};
 use ladder::{DataFile, Family, FileType, Image};
 use migrate_support::Both;
 use migrate_support::dice::Dice;
@@ -26,6 +27,14 @@ const FAMILIES: [Family; 9] = [
     Family::MicroLogix1200,
     Family::MicroLogix1400,
     Family::MicroLogix1500,
+];
+
+const READINGS: [Choice; 5] = [
+    Choice::MathSaturates,
+    Choice::DivideByZeroGivesZero,
+    Choice::RoundHalfEven,
+    Choice::StoreSaturates,
+    Choice::StoreRounds,
 ];
 
 const WORDS: [i16; 16] = [0, 1, -1, 2, 3, 7, 10, -10, 99, 255, 256, 16383, 32766, 32767, -32767, -32768];
@@ -308,7 +317,12 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
     if main.is_empty() {
         return Ok(BTreeSet::new());
     }
-    let mut both = match Both::with(&image, migration) {
+    // What is exact depends on no reading of Do-more.
+    let choices = match READINGS.get(dice.below(READINGS.len() as u64 + 1) as usize) {
+        Some(choice) => Choices::default().with(*choice),
+        None => Choices::default(),
+    };
+    let mut both = match Both::under(&image, migration, choices) {
         Ok(both) => both,
         // What the controller itself would not take.
         Err(why) if why.starts_with("the original") => return Ok(BTreeSet::new()),
@@ -342,7 +356,7 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
         });
         if let Some(difference) = difference {
             let text = both.text();
-            return Err(format!("{family}\n{difference} after {scan}\n{main}file 3\n{sub}\n{text}"));
+            return Err(format!("{family} {choices:?}\n{difference} after {scan}\n{main}file 3\n{sub}\n{text}"));
         }
         if !both.running() {
             break;

@@ -84,6 +84,13 @@ pub enum Problem {
     NotAlone(String),
     /// A contact that begins a new group directly behind an output: reads as the start of a new rung.
     GroupBehindOutput(String),
+    /// An operand that reads as an element and names no memory.
+    NoSuchElement {
+        /// The operand as written.
+        operand: String,
+        /// What is missing.
+        why: String,
+    },
     /// Nested deeper than is handled.
     Depth(usize),
     /// Line ends of both kinds; written as the first one is.
@@ -152,6 +159,7 @@ impl fmt::Display for Problem {
             }
             P::NotAlone(name) => write!(f, "{name} must stand alone in its rung"),
             P::GroupBehindOutput(name) => write!(f, "{name} directly behind a coil or box reads as a new rung"),
+            P::NoSuchElement { operand, why } => write!(f, "{operand}: {why}"),
             P::Depth(limit) => write!(f, "more than {limit} conditions on the stack"),
             P::MixedLineEnds => f.write_str("line ends of both kinds; all are written as the first"),
         }

@@ -16,6 +16,7 @@ pub mod circuit;
 pub mod counter;
 pub mod diagnostic;
 pub mod documentation;
+pub mod elements;
 pub mod engine;
 pub mod figures;
 pub mod instruction;

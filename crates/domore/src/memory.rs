@@ -520,6 +520,11 @@ impl Map {
         }
     }
 
+    /// An item of a type that is not modelled.
+    pub(crate) fn is_foreign(&self, name: &str) -> bool {
+        self.foreign.contains_key(&name.to_ascii_uppercase())
+    }
+
     fn nothing(&self, name: &str) -> String {
         match self.foreign.get(&name.to_ascii_uppercase()) {
             Some(word) => format!("its type {word} is not modelled"),

@@ -11,7 +11,7 @@ use super::context::{Context, Converted, Person};
 use super::emit::Emitter;
 use super::marks::Mark;
 use super::operand::{Start, Target, operand};
-use super::store::{destination, put, settled};
+use super::store::{Wrap, destination, put, settled};
 use super::table::{Row, row};
 use super::value::{Value, choose, limited, relation, wrapped};
 
@@ -423,7 +423,7 @@ fn fill(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     Ok(())
 }
 
-/// A value in the kind of the elements it fills: limited, without flags and trap.
+/// A value in the kind of the elements it fills: limited (or cut with S:2/14), without flags and trap.
 fn converted(cx: &mut Context<'_>, e: &mut Emitter, value: &Value, width: Width) -> Converted<Value> {
     if let Some(number) = value.constant {
         let outcome = instr::exec::logic::mov(number, width, cx.rules.math(0));
@@ -435,7 +435,12 @@ fn converted(cx: &mut Context<'_>, e: &mut Emitter, value: &Value, width: Width)
         (Width::Word | Width::Long, Width::Float) => Ok(value.as_float()),
         (Width::Long, Width::Word) => {
             let value = settled(e, value, &cx.scratch_long(2));
-            Ok(limited(&value, Width::Word))
+            let (limited, cut) = (limited(&value, Width::Word), wrapped(&value));
+            Ok(match cx.wrap() {
+                Wrap::Never => limited,
+                Wrap::Always => cut,
+                Wrap::By(bit) => choose(&format!("{bit} == 1"), &cut, &limited),
+            })
         }
         _ => Err(Person::new(Mark::Rounding, "FLL of a float into integers")),
     }

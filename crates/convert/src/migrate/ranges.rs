@@ -264,6 +264,21 @@ impl Ranges {
                 self.write_part(at(0), 2, Range::constant(0));
             }
             "SQO" | "SQC" | "SQL" => self.sequencer(name, instruction),
+            "BSL" | "BSR" => {
+                // POS and LEN stay as they are.
+                self.write(at(0), FULL);
+                self.write_part(at(1), 0, FULL);
+            }
+            "FFL" | "LFL" | "FFU" | "LFU" => {
+                // The stack or the destination; POS stays within the stack.
+                let length = self.part(at(2), 1);
+                self.write(at(if matches!(name, "FFL" | "LFL") { 1 } else { 0 }), FULL);
+                if matches!(name, "FFU" | "LFU") {
+                    self.write(at(1), FULL);
+                }
+                self.write_part(at(2), 0, FULL);
+                self.write_part(at(2), 2, if length.low > 0 { Range::between(0, length.high) } else { FULL });
+            }
             "FLL" => self.fill(instruction),
             "COP" | "CPW" => self.copy(name, instruction),
             _ => self.others(name, instruction),

@@ -128,6 +128,11 @@ fn stepped(
     Ok(settled(e, &value, &cx.scratch_long(scratch)))
 }
 
+/// Of a long word beside a file of words only the low one counts.
+fn low_word(value: Value) -> Value {
+    if value.is_float() || value.fits(Width::Word) { value } else { wrapped(&value) }
+}
+
 /// `N[first + POS]`.
 fn entry(start: &Start, position: &str, name: &str) -> Converted<String> {
     if start.block.is_bits() || matches!(start.block, Block::R | Block::Sl) {
@@ -186,7 +191,7 @@ fn output(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
         let word = settled(e, &word, &cx.scratch_long(2));
-        let mask = stepped(cx, e, mask, &position, 3)?;
+        let mask = low_word(stepped(cx, e, mask, &position, 3)?);
         let (old, target) = if to.address().is_some_and(|address| address.indexed) {
             cx.needs_unconfirmed("a destination decided at run time")?;
             let target = cx.start(to)?;
@@ -222,8 +227,8 @@ fn compare(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted 
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
         let word = settled(e, &word, &cx.scratch_long(2));
-        let mask = stepped(cx, e, mask, &position, 3)?;
-        let source = stepped(cx, e, source, &position, 4)?;
+        let mask = low_word(stepped(cx, e, mask, &position, 3)?);
+        let source = low_word(stepped(cx, e, source, &position, 4)?);
         let left = settled(e, &source.bit_and(&mask), &cx.scratch_long(5));
         let right = settled(e, &word.bit_and(&mask), &cx.scratch_long(6));
         e.reset(&found);
@@ -287,6 +292,9 @@ fn shift(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction, left: bool) -> 
     let start = cx.start(file)?;
     let length = u32::try_from(control.length).unwrap_or(0);
     let words = words(cx, file, &start, length.div_ceil(16))?;
+    if !cx.facts.stays_within(&control.address.clone().with_word(2), 0, i32::from(i16::MAX)) {
+        cx.condition(Mark::Files, format!("{}.POS is not negative", control.name));
+    }
     let bit = cx.bit(bit)?;
     let (en, dn, er, ul) = (control.bit(cx, EN)?, control.bit(cx, DN)?, control.bit(cx, ER)?, control.bit(cx, UL)?);
     e.when(|e| {
@@ -415,16 +423,17 @@ fn push(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     if source.is_float() {
         return Err(Person::new(Mark::Files, "a float put on a stack"));
     }
-    let source = if source.fits(Width::Word) { source } else { wrapped(&source) };
+    let source = low_word(source);
     let (en, dn) = (stack.control.bit(cx, EN)?, stack.control.bit(cx, DN)?);
     let position = stack.control.position.clone();
+    // S:24 gets the POS it found in every scan with power, behind the source, which may be S:24 or indexed by it.
+    let index = (cx.indexes() && looks_at_index(cx)).then(|| (cx.status_word(24), cx.scratch_long(2)));
+    if let Some((_, found)) = &index {
+        e.mov(&position, found);
+    }
     let mut result = Ok(());
     e.when(|e| {
         e.and_not(&en);
-        if cx.indexes() && looks_at_index(cx) {
-            let index = cx.status_word(24);
-            e.mov(&position, &index);
-        }
         e.when(|e| {
             e.and_not(&dn);
             e.and_compare(Relation::Less, &position, &stack.control.length.to_string());
@@ -433,6 +442,9 @@ fn push(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
         });
         result = stack.levels(cx, e);
     });
+    if let Some((index, found)) = &index {
+        e.mov(found, index);
+    }
     e.hold(&en);
     result
 }
@@ -445,10 +457,10 @@ fn pull(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction, first_in: bool) 
     let position = stack.control.position.clone();
     let (first, last) =
         (stack.words.first().cloned().unwrap_or_default(), stack.words.last().cloned().unwrap_or_default());
+    let (taken, had) = (cx.scratch_long(2), cx.scratch_bit(92));
     let mut result = Ok(());
     e.when(|e| {
         e.and_not(&eu);
-        let (taken, had) = (cx.scratch_long(2), cx.scratch_bit(92));
         e.when(|e| {
             e.and_compare(Relation::Greater, &position, "0");
             e.hold(&had);
@@ -472,18 +484,18 @@ fn pull(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction, first_in: bool) 
             e.math(&position, &format!("{position} - 1"));
         });
         result = stack.levels(cx, e);
-        if cx.indexes() && looks_at_index(cx) {
-            let index = cx.status_word(24);
-            e.mov(&position, &index);
-        }
-        // The destination last: it may be a word of the control element.
-        e.when(|e| {
-            e.and(&had);
-            let value = Value::element(taken.clone(), Width::Word);
-            let value = if to.width == Width::Float { value.as_float() } else { value };
-            put(e, &value, &to);
-            e.reset(&had);
-        });
+    });
+    if cx.indexes() && looks_at_index(cx) {
+        let index = cx.status_word(24);
+        e.mov(&position, &index);
+    }
+    // The destination last: it may be a word of the control element, or indexed by S:24.
+    e.when(|e| {
+        e.and(&had);
+        let value = Value::element(taken.clone(), Width::Word);
+        let value = if to.width == Width::Float { value.as_float() } else { value };
+        put(e, &value, &to);
+        e.reset(&had);
     });
     e.hold(&eu);
     result

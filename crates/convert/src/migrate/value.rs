@@ -421,7 +421,14 @@ pub(super) fn between(value: &Value, low: i64, high: i64) -> Value {
 
 /// The low 16 bits as a signed word.
 pub(super) fn wrapped(value: &Value) -> Value {
-    let shifted = value.plus(&Value::integer(32_768)).bit_and(&Value::integer(65_535));
+    let low = Value::integer(65_535);
+    if value.high > limits(Width::Long).1 - 32_768 {
+        // No sum that leaves 32 bits.
+        let low = value.bit_and(&low);
+        let top = relation(&low, ">", &Value::integer(32_767));
+        return choose(&top, &low.minus(&Value::integer(65_536)), &low).bounded(-32_768, 32_767);
+    }
+    let shifted = value.plus(&Value::integer(32_768)).bit_and(&low);
     shifted.minus(&Value::integer(32_768)).bounded(-32_768, 32_767)
 }
 

@@ -9,6 +9,7 @@ pub(crate) mod dice;
 use std::time::Duration;
 
 use convert::migrate::{self, Migration, Options};
+use domore::choices::Choices;
 use domore::engine;
 use ladder::{Address, DataFile, Family, FileType, Image, Value};
 
@@ -67,13 +68,19 @@ impl Both {
 
     /// Both sides of a migration; why one of them does not run.
     pub(crate) fn with(image: &Image, migration: Migration) -> Result<Both, String> {
+        Both::under(image, migration, Choices::default())
+    }
+
+    /// The same under other readings of Do-more.
+    pub(crate) fn under(image: &Image, migration: Migration, choices: Choices) -> Result<Both, String> {
         let behind = pushes_behind_outputs(&migration.project);
         assert!(behind.is_empty(), "STR behind an output: {behind:#?}");
         let text = domore::text::write(&migration.project);
         let reading = domore::text::read(&text).expect("the text is read back");
         assert!(reading.diagnostics.is_empty(), "{:?}\n{text}", reading.diagnostics);
-        let program = engine::Program::compile(&reading.project, &engine::Options::default())
-            .map_err(|refusals| format!("{refusals:#?}\n{text}"))?;
+        let program =
+            engine::Program::compile(&reading.project, &engine::Options { choices, ..engine::Options::default() })
+                .map_err(|refusals| format!("{refusals:#?}\n{text}"))?;
         let domore = engine::Machine::new(program);
         let program = sim::Program::compile(image, &sim::Options::default());
         let program = program.map_err(|refusals| format!("the original: {refusals:?}"))?;

@@ -69,6 +69,17 @@ impl Compiled {
         }
     }
 
+    /// A preset or a time: as a constant one that 32 bits hold, which is the most a structure can. (help DMD0177, DMD0030)
+    pub(crate) fn preset(&mut self, text: &str) -> Result<Source, Why> {
+        let source = self.source(text)?;
+        let beyond = match source {
+            Source::Constant(Num::Int(value)) => i32::try_from(value).is_err(),
+            Source::Constant(Num::Real(value)) => !(-2_147_483_648.0..2_147_483_648.0).contains(&value),
+            _ => false,
+        };
+        if beyond { Err(format!("{text}: a preset goes up to {}", i32::MAX)) } else { Ok(source) }
+    }
+
     /// A place to write a number.
     pub(crate) fn target(&mut self, text: &str) -> Result<Target, Why> {
         match self.source(text)? {

@@ -130,7 +130,7 @@ impl Compiler {
 
     fn timer(&mut self, kind: TimerKind, instruction: &Instruction) -> Output {
         let bit = self.out.structure(instruction.operand(0), ElementType::Timer)?;
-        let preset = self.out.source(instruction.operand(1))?;
+        let preset = self.out.preset(instruction.operand(1))?;
         let output = match kind {
             TimerKind::OnDelay | TimerKind::OffDelay => Some(self.out.coil(instruction.operand(2))?),
             _ => None,
@@ -147,7 +147,7 @@ impl Compiler {
         let unused = |text: &str| text.eq_ignore_ascii_case("DST511");
         let mut preset = |index: usize| {
             let text = instruction.operand(index);
-            if text.is_empty() || unused(text) { Ok(None) } else { self.out.source(text).map(Some) }
+            if text.is_empty() || unused(text) { Ok(None) } else { self.out.preset(text).map(Some) }
         };
         let (preset, down_preset) = (preset(1)?, preset(2)?);
         let structure = self.structure(bit);
@@ -241,7 +241,7 @@ impl Compiler {
                 (BoxCode::Filter { factor, input, output: out.target(text(2))? }, vec![FILTER])
             }
             "FLASHER" | "DEBOUNCE" => {
-                let times = [out.source(text(0))?, out.source(text(1))?];
+                let times = [out.preset(text(0))?, out.preset(text(1))?];
                 let output = out.coil(text(2))?;
                 let memory = self.phase();
                 if mnemonic == "FLASHER" {
@@ -251,7 +251,7 @@ impl Compiler {
                 }
             }
             _ => {
-                let (time, output) = (out.source(text(0))?, out.coil(text(1))?);
+                let (time, output) = (out.preset(text(0))?, out.coil(text(1))?);
                 (BoxCode::TimedOut { time, output, memory: self.phase() }, vec![TIMED_OUT])
             }
         })

@@ -330,3 +330,19 @@ fn power_loss_clears_what_is_not_retentive() {
     m.shows(&[("X0", 0), ("Y0", 0), ("C0", 1), ("N0", 7)]);
     assert_eq!(m.mode(), Mode::Run);
 }
+
+#[test]
+fn presets_beyond_32_bits_are_refused() {
+    for rung in [
+        "STR X0\nTMR T0 2147483648",
+        "STR X0\nTMRDOWN T0 4294967295",
+        "STR X0\nSTR X1\nCNT CT0 2147483648",
+        "STR X0\nSTR X1\nSTR X2\nUDC CT0 5 2147483648",
+        "STR X0\nFLASHER 500 2147483648 Y0",
+    ] {
+        let text = format!("$PRGRM $Main\n\n{rung}\n\n$PGMEND $Main\n");
+        let refusals = program(&text, &Options::default()).err().unwrap_or_default();
+        assert!(refusals.iter().any(|refusal| refusal.to_string().contains("goes up to 2147483647")), "{rung}");
+    }
+    machine("STR X0\nTMR T0 2147483647").scan(MS10);
+}

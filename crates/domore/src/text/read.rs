@@ -5,6 +5,7 @@ use std::fmt;
 use super::rows::{Line, begin_word, comment_kind, is_comment_line, is_end};
 use super::words::split;
 use crate::diagnostic::{Diagnostic, Problem};
+use crate::elements;
 use crate::instruction::{self, Effect, Join};
 use crate::program::{
     CodeBlock, CodeKind, Comment, Controller, Device, ElementDoc, Format, Instruction, LineEnd, MemoryBlock, Origin,
@@ -181,6 +182,7 @@ impl<'a> Reader<'a> {
         let project = Project { format: self.format, parts: self.parts, tail };
         let mut diagnostics = self.diagnostics;
         diagnostics.extend(stack::check_project(&project));
+        diagnostics.extend(elements::check(&project));
         diagnostics.sort_by_key(|found| (found.line, found.column));
         Reading { project, diagnostics }
     }
