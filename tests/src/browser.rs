@@ -45,6 +45,12 @@ pub mod key {
     pub const UP: &str = "\u{E013}";
     /// Arrow down.
     pub const DOWN: &str = "\u{E015}";
+    /// Arrow left.
+    pub const LEFT: &str = "\u{E012}";
+    /// Arrow right.
+    pub const RIGHT: &str = "\u{E014}";
+    /// Tab.
+    pub const TAB: &str = "\u{E004}";
 }
 
 /// A browser with one page.
@@ -186,6 +192,36 @@ impl Browser {
         self.ask("the size", self.client().set_window_size(width, height));
     }
 
+    /// Tells pages that the system has a dark theme, or a light one.
+    pub fn dark(&self, dark: bool) {
+        let value = if dark { "dark" } else { "light" };
+        let features = json!([{"name": "prefers-color-scheme", "value": value}]);
+        self.tell("Emulation.setEmulatedMedia", json!({"features": features}));
+    }
+
+    /// Shows pages as paper would show them, or as a screen again.
+    pub fn print(&self, paper: bool) {
+        self.tell("Emulation.setEmulatedMedia", json!({"media": if paper { "print" } else { "" }}));
+    }
+
+    /// Makes everything larger, as a person does with Ctrl and +; the page becomes narrower by it.
+    pub fn zoom(&self, width: u32, height: u32, factor: f64) {
+        let (width, height) = (f64::from(width) / factor, f64::from(height) / factor);
+        let size =
+            json!({"width": width as u32, "height": height as u32, "deviceScaleFactor": factor, "mobile": false});
+        self.tell("Emulation.setDeviceMetricsOverride", size);
+    }
+
+    /// Ends [`Browser::zoom`].
+    pub fn no_zoom(&self) {
+        self.tell("Emulation.clearDeviceMetricsOverride", json!({}));
+    }
+
+    /// A command of Chromium's own protocol.
+    fn tell(&self, command: &'static str, parameters: Value) {
+        self.ask(command, self.client().issue_cmd(Told { command, parameters }));
+    }
+
     /// Saves what is visible as a PNG file in `target/screenshots`, for people to look at.
     pub fn screenshot(&self, name: &str) -> PathBuf {
         let bytes = self.ask("a picture", self.client().screenshot());
@@ -254,5 +290,22 @@ impl WebDriverCompatibleCommand for Log {
 
     fn method_and_body(&self, _: &url::Url) -> (http::Method, Option<String>) {
         (http::Method::POST, Some(json!({"type": "browser"}).to_string()))
+    }
+}
+
+/// A command that WebDriver hands on to Chromium.
+#[derive(Debug)]
+struct Told {
+    command: &'static str,
+    parameters: Value,
+}
+
+impl WebDriverCompatibleCommand for Told {
+    fn endpoint(&self, base: &url::Url, session: Option<&str>) -> Result<url::Url, url::ParseError> {
+        base.join(&format!("session/{}/goog/cdp/execute", session.unwrap_or_default()))
+    }
+
+    fn method_and_body(&self, _: &url::Url) -> (http::Method, Option<String>) {
+        (http::Method::POST, Some(json!({"cmd": self.command, "params": self.parameters}).to_string()))
     }
 }

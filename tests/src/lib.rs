@@ -4,6 +4,7 @@
 //! crate that reads a witness may use our own decoder: the two meet only in
 //! the tests.
 
+pub mod axe;
 pub mod book;
 pub mod browser;
 pub mod corpus;

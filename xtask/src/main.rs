@@ -39,7 +39,7 @@ const CHORES: &[Chore] = &[
     },
     Chore {
         name: "setup",
-        help: "install what tests need beside Rust: Chromium and its driver, where apt-get is, and a tester of interfaces, where python3 is",
+        help: "install what tests need beside Rust: Chromium and its driver where apt-get is, axe-core where npm is, a tester of interfaces where python3 is",
         run: |_| setup(),
     },
     Chore { name: "test", help: "all tests, the corpus checks included where ../shared/corpus is", run: |_| test() },
@@ -111,22 +111,28 @@ const NEEDED: [(&[&str], &[&str]); 2] = [
     (&["chromedriver"], &["chromium-driver", "chromium-chromedriver"]),
 ];
 
-fn setup() -> Outcome {
-    browser()?;
-    api_tester::setup()
-}
+/// The accessibility checker that tests run in pages, in a version that is looked at before it is raised.
+const AXE: (&str, &str) = ("axe-core", "4.14.1");
 
 /// Installs what is missing. Tests that need it fail plainly without it, or say that they are skipped with
 /// `RUNGS_NO_BROWSER=1`; so this is no failure where packages cannot be installed.
-fn browser() -> Outcome {
+fn setup() -> Outcome {
+    if std::env::var_os("RUNGS_NO_BROWSER").is_none_or(|value| value != "1") {
+        set_up_browser();
+        set_up_axe();
+    }
+    api_tester::setup()
+}
+
+fn set_up_browser() {
     let missing: Vec<_> = NEEDED.iter().filter(|(programs, _)| !programs.iter().any(|name| on_path(name))).collect();
-    if missing.is_empty() || std::env::var_os("RUNGS_NO_BROWSER").is_some_and(|value| value == "1") {
-        return Ok(());
+    if missing.is_empty() {
+        return;
     }
     let names: Vec<&str> = missing.iter().filter_map(|(programs, _)| programs.first().copied()).collect();
     if !on_path("apt-get") {
         println!("tests of pages need {}: install them, or set RUNGS_NO_BROWSER=1", names.join(" and "));
-        return Ok(());
+        return;
     }
     println!("installing {}", names.join(", "));
     // Package lists can be old and still good enough.
@@ -139,7 +145,33 @@ fn browser() -> Outcome {
             println!("{} could not be installed; tests of pages need it", programs.first().unwrap_or(&""));
         }
     }
-    Ok(())
+}
+
+/// Puts the accessibility checker below `target/npm`, where `tests/src/axe.rs` looks for it.
+fn set_up_axe() {
+    let (name, version) = AXE;
+    let folder = root().join("target/npm");
+    let installed = std::fs::read_to_string(folder.join("node_modules").join(name).join("package.json"));
+    if installed.is_ok_and(|text| text.contains(&format!("\"version\": \"{version}\""))) {
+        return;
+    }
+    let package = format!("{name}@{version}");
+    let lacks = |why: &str| println!("{why}: tests of accessibility need {package} below {}", folder.display());
+    if !on_path("npm") {
+        lacks("npm is not here: install Node.js, or set RUNGS_NO_BROWSER=1");
+        return;
+    }
+    println!("installing {package}");
+    if let Err(why) = std::fs::create_dir_all(&folder) {
+        lacks(&why.to_string());
+        return;
+    }
+    let quiet = ["--no-save", "--no-package-lock", "--no-audit", "--no-fund", "--ignore-scripts", "--loglevel=error"];
+    let mut npm = Command::new("npm");
+    npm.args(["install", &package, "--prefix"]).arg(&folder).args(quiet).current_dir(&folder);
+    if let Err(why) = run(&mut npm) {
+        lacks(&why);
+    }
 }
 
 /// Runs `apt-get` as whoever may.

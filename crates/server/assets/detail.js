@@ -5,17 +5,23 @@ import { button, byId, el } from "./dom.js";
 import { shown, typed } from "./values.js";
 
 let stop = null;
+let opener = null;
 
-export function close(live) {
-  byId("detail").hidden = true;
+export function close(app) {
+  const panel = byId("detail");
+  const inside = panel.contains(document.activeElement);
+  panel.hidden = true;
   stop?.();
   stop = null;
-  live.see("detail", null);
+  app.live.see("detail", null);
+  // Keys go on where they came from.
+  if (inside) (opener?.isConnected ? opener : byId("view")).focus({ preventScroll: true });
 }
 
 /** Opens the panel on an address. `app` is the page. */
 export async function open(app, address) {
   const panel = byId("detail");
+  if (!panel.contains(document.activeElement)) opener = document.activeElement;
   let found;
   try {
     found = await get(`/api/uses?address=${encodeURIComponent(address)}`);
@@ -23,8 +29,9 @@ export async function open(app, address) {
     tell(problem.message, "wrong");
     return;
   }
-  close(app.live);
+  stop?.();
   const value = el("output", { class: "value" }, "…");
+  const forced = el("strong", { class: "forced-word" });
   const bit = (on) => button(on ? "1" : "0", `Write ${on}`, () => post("/api/write", { address: found.address, value: on }));
   const input = el("input", { type: "text", ariaLabel: `New value of ${found.address}`, size: 10, autocomplete: "off" });
   const write = el("form", { on: { submit: (event) => {
@@ -35,27 +42,31 @@ export async function open(app, address) {
     button(text, `${text} ${found.address}`, () => post("/api/force", { address: found.address, state }));
   const point = app.project.points.some((point) => point.address === found.address && !point.analog) || /^[IOXY]/.test(found.address);
   panel.replaceChildren(
-    el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app.live), { class: "close" })),
+    el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app), { class: "close", ariaLabel: "Close" })),
     el("p", { class: "symbol" }, found.symbol),
     el("p", { class: "description" }, found.description),
-    el("p", {}, "Value: ", value),
+    el("p", {}, "Value: ", value, " ", forced),
     app.readOnly ? null : el("div", { class: "row" }, bit(0), bit(1), write),
     app.readOnly || !point ? null
       : el("div", { class: "row", role: "group", ariaLabel: "Force" }, force(true, "Force on"), force(false, "Force off"), force(null, "Remove force")),
     el("div", { class: "row" },
       button("Watch", "Add to the watch list", () => app.watch(found.address)),
       button("Trend", "Add to the trend", () => app.trend(found.address))),
-    el("h3", {}, `Uses (${found.uses.length + found.left_out})`),
+    el("h3", {}, `Cross reference (${found.uses.length + found.left_out})`),
     el("ul", { class: "uses" }, found.uses.map((use) => el("li", {},
       button(`${app.routineName(use.routine)} rung ${use.rung}`, "Go to the rung", () => app.goto(use.routine, use.rung), { class: "link" }),
       el("span", { class: `access ${use.access.includes("write") ? "writes" : "reads"}` }, use.access),
       el("code", {}, use.text)))),
     found.left_out ? el("p", {}, `${found.left_out} more are not listed.`) : null,
   );
+  panel.ariaLabel = `Address ${found.address}`;
   panel.hidden = false;
+  panel.focus({ preventScroll: true });
   app.live.see("detail", { values: [found.address] });
   stop = app.live.listen((_, live) => {
     const now = live.values.get(found.address);
     value.textContent = shown(now);
+    const state = app.forces.get(found.address);
+    forced.textContent = state === undefined ? "" : `forced ${state ? "ON" : "OFF"}`;
   });
 }

@@ -36,3 +36,10 @@ export function time(seconds) {
   const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
   return h ? `${h}:${pad(m)}:${pad(s)}${part}` : `${m}:${pad(s)}${part}`;
 }
+
+/** A colour of the style sheet as canvases take it: what the theme makes of it. */
+export function colour(name) {
+  const probe = byId("probe");
+  probe.style.color = `var(${name})`;
+  return getComputedStyle(probe).color;
+}

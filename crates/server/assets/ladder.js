@@ -1,126 +1,144 @@
 // The ladder of a program file: drawn by the server, coloured here by the power flow.
 
-import { get, post } from "./api.js";
-import { button, drawing, el } from "./dom.js";
-import { shown } from "./values.js";
+import { get, tell } from "./api.js";
+import { el } from "./dom.js";
+import { Rung, rem } from "./rung.js";
 
 /** Rungs asked for at once. */
 const CHUNK = 20;
 
-/** Bits of the power flow of an instruction. */
-const [EXECUTED, AFTER, CHANGED] = [1, 4, 8];
-
-/** Columns of a drawing that fit. */
+/** Columns of a drawing that fit. Padding, the mark of the rung a link led to, and the bar that scrolls take their part. */
 function columns(view) {
-  // Padding, the mark of the rung a link led to, and the bar that scrolls.
-  return Math.max(60, Math.min(160, Math.floor((view.clientWidth - 64) / 8)));
+  const column = 8 * (Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / 16);
+  const style = getComputedStyle(view);
+  const padding = Number.parseFloat(style.paddingLeft) + Number.parseFloat(style.paddingRight);
+  return Math.max(40, Math.min(160, Math.floor((view.clientWidth - padding - 24) / column)));
 }
 
-export async function ladder(app, view, routine, goal) {
+export async function ladder(app, view, routine, goal, mark = true) {
   const file = app.project.routines.find((one) => one.number === routine);
   if (!file) throw new Error(`There is no program file or code block ${routine}.`);
   const width = columns(view);
   const heights = await get(`/api/routines/${routine}/heights?width=${width}`);
   const rungs = [];
   for (let index = 0; index < file.rungs; index += 1) {
-    const rung = el("section", { class: "rung", data: { rung: index }, ariaLabel: `Rung ${index}` });
-    rung.style.minHeight = `${heights[index]}px`;
+    const rung = el("section", { class: "rung rung-place", data: { rung: index }, ariaLabel: `Rung ${index}` });
+    rung.style.minHeight = rem(heights[index]);
     rungs.push(rung);
   }
-  view.replaceChildren(el("h2", {}, `${file.title}`, el("span", { class: "description" }, ` ${file.description}`)), ...rungs);
-  /** Rungs that are drawn: instructions, and what of them stands in the drawing. */
+  view.replaceChildren(
+    el("h2", {}, `${file.title}`, el("span", { class: "description" }, ` ${file.description}`)),
+    el("p", { class: "print-only" }, "Rungs that were not on the screen are not printed; `rungs report` prints the whole program."),
+    ...rungs);
+  /** Rungs that are drawn. */
   const drawn = new Map();
   const visible = new Set();
-  const asked = new Set();
+  const asked = new Map();
+  /** The one instruction that Tab leads to; arrows lead from there to the others. */
+  let current = null;
 
-  const reveal = (index) => rungs[index].scrollIntoView({ block: heights[index] < view.clientHeight ? "center" : "start" });
+  const reveal = (index) => rungs[index].scrollIntoView({ block: rungs[index].offsetHeight < view.clientHeight ? "center" : "start" });
 
   const see = () => {
-    const shownRungs = [...visible].map((index) => drawn.get(index)).filter(Boolean);
-    const parts = shownRungs.flatMap((one) => one.parts);
-    app.live.see("ladder", {
-      rungs: [...visible].map((index) => [routine, index]),
-      values: [...new Set(parts.flatMap((part) => [...part.values.map(([address]) => address), ...(part.bit ? [part.bit] : [])]))],
-    });
+    const shown = [...visible].map((index) => drawn.get(index)).filter(Boolean);
+    app.live.see("ladder", { rungs: [...visible].map((index) => [routine, index]), values: [...new Set(shown.flatMap((one) => one.values))] });
   };
 
-  function paint(index) {
-    const one = drawn.get(index);
-    if (!one) return;
-    const bits = app.live.rungs.get(`${routine}:${index}`) ?? "";
-    const forces = app.forces;
-    one.parts.forEach((part, number) => {
-      const flow = Number.parseInt(bits[number] ?? "0", 16);
-      const forced = part.bit ? forces.get(part.bit) : undefined;
-      if (part.flow !== flow || part.forced !== forced) {
-        part.flow = flow;
-        part.forced = forced;
-        const list = part.node.classList;
-        list.toggle("idle", !(flow & EXECUTED));
-        list.toggle("on", Boolean(flow & AFTER));
-        list.toggle("edge", Boolean(flow & CHANGED));
-        list.toggle("forced-on", forced === true);
-        list.toggle("forced-off", forced === false);
-      }
-      for (const [address, nodes] of part.values) {
-        const text = shown(app.live.values.get(address));
-        for (const node of nodes) if (node.textContent !== text) {
-          node.textContent = text;
-          // It was stretched to the columns of the value it was drawn with.
-          node.removeAttribute("textLength");
-        }
-      }
-    });
-    if (one.bits === bits) return;
-    one.bits = bits;
-    const power = new Set([0]);
-    for (const [number, , leaves] of one.wires) if ((one.parts[number]?.flow ?? 0) & AFTER) power.add(leaves);
-    for (const [from, to] of one.shorts) if (power.has(from)) power.add(to);
-    const executed = one.parts.some((part) => part.flow & EXECUTED);
-    for (const [wire, node] of one.nodes) node.classList.toggle("on", executed && power.has(wire));
-  }
+  const enter = (part) => {
+    if (current) current.node.tabIndex = -1;
+    current = part;
+    if (part) part.node.tabIndex = 0;
+  };
 
-  async function load(index) {
-    const from = Math.floor(index / CHUNK) * CHUNK;
-    if (asked.has(from)) return;
-    asked.add(from);
+  async function chunk(from) {
     const views = await get(`/api/routines/${routine}/rungs?from=${from}&count=${CHUNK}&width=${width}`);
-    for (const rung of views) {
-      const section = rungs[rung.rung];
-      const picture = drawing(rung.svg);
-      const parts = rung.instructions.map((instruction, number) => {
-        const node = picture.querySelector(`g[data-i="${number}"]`) ?? el("span");
-        const values = instruction.values.map(({ address, operand, instead }) =>
-          [address, [...node.querySelectorAll(`text.${instead ? "operand" : "value"}[data-o="${operand}"]`)]]);
-        node.tabIndex = 0;
-        node.setAttribute("role", "button");
-        node.addEventListener("click", (event) => act(event, instruction));
-        node.addEventListener("keydown", (event) => {
-          if (event.key === "Enter") act(event, instruction);
-        });
-        return { node, values, bit: instruction.bit, flow: -1 };
-      });
-      const nodes = [...picture.querySelectorAll("path.w[data-n]")].map((node) => [Number(node.dataset.n), node]);
-      drawn.set(rung.rung, { parts, nodes, wires: rung.wires, shorts: rung.shorts, bits: null });
-      section.replaceChildren(picture);
-      paint(rung.rung);
+    for (const one of views) {
+      const rung = new Rung(app, routine, one, rungs[one.rung]);
+      drawn.set(one.rung, rung);
+      rung.paint();
+      if (!current && rung.parts.length) enter(rung.parts[0]);
     }
     see();
-    if (goal !== null && drawn.has(goal)) {
-      reveal(goal);
-      rungs[goal].classList.add("goal");
-      goal = null;
-    }
   }
 
-  /** A click on a contact or coil toggles its bit; with Shift, or on anything else, the panel opens. */
-  function act(event, instruction) {
+  function load(index) {
+    const from = Math.floor(index / CHUNK) * CHUNK;
+    if (!asked.has(from)) {
+      asked.set(from, chunk(from).catch((problem) => {
+        // It is asked for again when it comes into sight again.
+        asked.delete(from);
+        tell(problem.message, "wrong");
+      }));
+    }
+    return asked.get(from);
+  }
+
+  async function arrive(index) {
+    reveal(index);
+    await load(index);
+    if (mark) rungs[index].classList.add("goal");
+    const first = drawn.get(index)?.parts[0];
+    if (first) enter(first);
+    reveal(index);
+  }
+
+  const middle = (part) => {
+    const sign = part.node.querySelector?.(".sign, .frame") ?? part.node;
+    const { left, right, top } = sign.getBoundingClientRect();
+    return [(left + right) / 2, top];
+  };
+
+  async function focus(part) {
+    if (!part) return;
+    enter(part);
+    part.node.focus({ preventScroll: true });
+    part.node.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+
+  /** The instructions of the next rung, upwards or downwards, that has some. */
+  async function beyond(index, step) {
+    for (let at = index + step; at >= 0 && at < rungs.length; at += step) {
+      await load(at);
+      const { parts } = drawn.get(at) ?? { parts: [] };
+      if (parts.length) return parts;
+    }
+    return [];
+  }
+
+  async function move(index, part, key) {
+    const { parts } = drawn.get(index);
+    const at = parts.indexOf(part);
+    if (key === "ArrowRight") return focus(parts[at + 1] ?? (await beyond(index, 1))[0]);
+    if (key === "ArrowLeft") return focus(parts[at - 1] ?? (await beyond(index, -1)).at(-1));
+    const down = key === "ArrowDown";
+    const [x, y] = middle(part);
+    const towards = (all) => {
+      const places = all.map((one) => [one, ...middle(one)]).filter(([, , top]) => (down ? top > y + 6 : top < y - 6));
+      const row = down ? Math.min(...places.map((place) => place[2])) : Math.max(...places.map((place) => place[2]));
+      const near = places.filter((place) => Math.abs(place[2] - row) < 24);
+      return near.sort((a, b) => Math.abs(a[1] - x) - Math.abs(b[1] - x))[0]?.[0];
+    };
+    return focus(towards(parts) ?? towards(await beyond(index, down ? 1 : -1)));
+  }
+
+  function key(event) {
+    const node = event.target.closest?.("g.i");
+    const section = event.target.closest?.(".rung-place");
+    if (!node || !section || event.altKey || event.ctrlKey || event.metaKey) return;
+    const index = Number(section.dataset.rung);
+    const rung = drawn.get(index);
+    const part = rung?.parts.find((one) => one.node === node);
+    if (!part) return;
+    const address = part.bit ?? part.instruction.values[0]?.address;
+    const does = {
+      Enter: () => rung.act(part), " ": () => rung.act(part), m: () => rung.menu(part), F10: () => event.shiftKey && rung.menu(part),
+      e: () => part.values.length && !app.readOnly && rung.edit(part, part.values[0][0]),
+      x: () => address && app.open(address),
+    }[event.key] ?? (event.key.startsWith("Arrow") ? () => move(index, part, event.key) : null);
+    if (!does) return;
     event.preventDefault();
-    const address = instruction.bit ?? instruction.values[0]?.address;
-    if (!address) return;
-    const input = instruction.bit && !app.readOnly && ["XIC", "XIO"].includes(instruction.mnemonic) && !event.shiftKey;
-    if (input) post("/api/write", { address: instruction.bit, value: app.live.values.get(instruction.bit) ? 0 : 1 });
-    app.open(address);
+    event.stopPropagation();
+    does();
   }
 
   const watcher = new IntersectionObserver((entries) => {
@@ -128,30 +146,53 @@ export async function ladder(app, view, routine, goal) {
       const index = Number(entry.target.dataset.rung);
       if (entry.isIntersecting) {
         visible.add(index);
-        load(index);
+        load(index).then(() => drawn.get(index)?.paint());
       } else visible.delete(index);
     }
     see();
   }, { root: view, rootMargin: "300px" });
   rungs.forEach((rung) => watcher.observe(rung));
-  if (goal !== null && rungs[goal]) {
-    reveal(goal);
-    await load(goal);
-  } else await load(0);
+  view.addEventListener("keydown", key);
+  const focused = (event) => {
+    const node = event.target.closest?.("g.i");
+    const section = node?.closest(".rung-place");
+    const part = section && drawn.get(Number(section.dataset.rung))?.parts.find((one) => one.node === node);
+    if (part) enter(part);
+  };
+  view.addEventListener("focusin", focused);
+  if (goal !== null && rungs[goal]) await arrive(goal);
+  else await load(0);
 
   let lastForces = null;
   const stop = app.live.listen((news) => {
-    for (const key of Object.keys(news.rungs ?? {})) {
-      const [of, index] = key.split(":").map(Number);
-      if (of === routine && visible.has(index)) paint(index);
-    }
     const forces = JSON.stringify(news.status.forces);
-    const forced = forces !== lastForces;
+    const all = forces !== lastForces || Object.keys(news.values ?? {}).length;
     lastForces = forces;
-    if (forced || Object.keys(news.values ?? {}).length) for (const index of visible) paint(index);
+    if (all) for (const index of visible) drawn.get(index)?.paint();
+    else for (const key of Object.keys(news.rungs ?? {})) {
+      const [of, index] = key.split(":").map(Number);
+      if (of === routine && visible.has(index)) drawn.get(index)?.paint();
+    }
   });
+
+  // Another width has other drawings; the rung on top stays.
+  let timer = 0;
+  const resized = new ResizeObserver(() => {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      if (columns(view) === width) return;
+      const top = view.getBoundingClientRect().top;
+      const at = rungs.findIndex((rung) => rung.getBoundingClientRect().bottom > Math.max(top, 0));
+      app.show(() => ladder(app, view, routine, at > 0 ? at : null, false));
+    }, 250);
+  });
+  resized.observe(view);
   return () => {
+    clearTimeout(timer);
+    resized.disconnect();
     watcher.disconnect();
+    view.removeEventListener("keydown", key);
+    view.removeEventListener("focusin", focused);
     stop();
     app.live.see("ladder", null);
   };

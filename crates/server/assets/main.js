@@ -1,33 +1,54 @@
 // The page: the project tree, what is shown, and the keys.
 
-import { Live, get, post } from "./api.js";
+import { Live, get, post, tell } from "./api.js";
 import { close, open } from "./detail.js";
 import { button, byId, el } from "./dom.js";
+import { fault } from "./fault.js";
+import { help } from "./help.js";
 import { ladder } from "./ladder.js";
 import { palette } from "./palette.js";
+import { session } from "./session.js";
 import { toolbar } from "./run.js";
-import { dataFile, forces, points, timers, watch } from "./tables.js";
+import { controller, dataFile, forces, points, timers, watch } from "./tables.js";
 import { trend } from "./trend.js";
+import { shown, typed } from "./values.js";
 
-const VIEWS = { points, timers, forces, watch, trend };
-const NAMES = { points: "Inputs and outputs", timers: "Timers and counters", forces: "Forces", watch: "Watch list", trend: "Trend" };
+/** Views by the name in the address bar. */
+const VIEWS = {
+  controller: ["Controller properties", controller],
+  session: ["Run and recording", session],
+  points: ["Inputs and outputs", points],
+  timers: ["Timers and counters", timers],
+  fault: ["Fault", fault],
+  forces: ["Forces", forces],
+  watch: ["Watch list", watch],
+  trend: ["Trend", trend],
+};
+
+/** Names of the groups of the tree, as the vendors' software has them. */
+const GROUPS = {
+  slc: { program: "Program Files", data: "Data Files", forces: "Force Files", watch: "Custom Data Monitors", trends: "Trends" },
+  "do-more": { program: "Code-Blocks", data: "Memory", forces: "Forces", watch: "Data View", trends: "Trend View" },
+};
 
 class App {
   constructor(project, status) {
     this.project = project;
     this.readOnly = status.read_only;
     this.live = new Live();
-    this.watched = [];
+    this.key = `rungs-watch:${project.file}`;
+    this.watched = this.#kept();
     this.stop = null;
-    document.title = `${project.file} – rungs`;
     byId("title").textContent = project.file;
     byId("title").title = project.controller;
     this.tree();
     toolbar(this);
     palette(this);
-    for (const note of project.notes) byId("tree").append(el("p", { class: "note" }, note));
+    help(this);
     addEventListener("hashchange", () => this.follow());
-    document.addEventListener("keydown", (event) => this.key(event));
+    document.addEventListener("keydown", (event) => this.pressed(event));
+    byId("tree-button").addEventListener("click", () => this.drawer());
+    byId("tree").addEventListener("click", (event) => event.target.closest("a") && this.drawer(false));
     this.follow();
   }
 
@@ -36,29 +57,61 @@ class App {
     return new Map(this.live.status?.forces ?? []);
   }
 
+  /** Views, program files and data files a person can go to: name, what it is, address. */
+  get places() {
+    const { routines, data_files: files } = this.project;
+    return [
+      ...Object.entries(VIEWS).map(([key, [name]]) => [name, "view", key]),
+      ...routines.map((one) => [`${one.title} ${one.description}`.trim(), "program", `ladder/${one.number}`]),
+      ...files.map((one) => [this.dataName(one), "data", `data/${encodeURIComponent(one.label)}`]),
+    ];
+  }
+
+  dataName(file) {
+    return file.title ? `${file.label} - ${file.title}` : file.label;
+  }
+
   tree() {
+    const names = GROUPS[this.project.dialect] ?? GROUPS.slc;
     const link = (hash, text, title) => el("li", {}, el("a", { href: `#${hash}`, title }, text));
-    const group = (name, items, open) => el("details", { open }, el("summary", {}, name), el("ul", {}, items));
+    const views = (...keys) => keys.map((key) => link(key, VIEWS[key][0]));
+    const group = (name, items) => el("details", { open: true }, el("summary", {}, name), el("ul", {}, items));
     byId("tree").replaceChildren(
       el("p", { class: "controller" }, this.project.controller),
-      group("Program", this.project.routines.map((one) => link(`ladder/${one.number}`, one.title, `${one.description} ${one.rungs} rungs`.trim())), true),
-      group("Simulation", Object.entries(NAMES).map(([key, name]) => link(key, name)), true),
-      group("Data", this.project.data_files.map((one) => link(`data/${encodeURIComponent(one.label)}`, `${one.label} ${one.title}`)), false));
+      group("Controller", views("controller", "session", "points", "timers", "fault")),
+      group(names.program, this.project.routines.map((one) => link(`ladder/${one.number}`, one.title, `${one.description} ${one.rungs} rungs`.trim()))),
+      group(names.data, this.project.data_files.map((one) => link(`data/${encodeURIComponent(one.label)}`, this.dataName(one)))),
+      group(names.forces, views("forces")), group(names.watch, views("watch")), group(names.trends, views("trend")),
+      ...this.project.notes.map((note) => el("p", { class: "note" }, note)));
+  }
+
+  /** Opens or closes the tree where there is no room for it beside the program. */
+  drawer(wanted) {
+    const on = document.body.classList.toggle("tree-open", wanted);
+    byId("tree-button").setAttribute("aria-expanded", String(on));
+    if (on) (byId("tree").querySelector("[aria-current]") ?? byId("tree").querySelector("a"))?.focus();
   }
 
   /** Shows what the address bar says, so that Back and bookmarks work. */
   follow() {
     const [view, ...rest] = location.hash.slice(1).split("/");
     const main = byId("view");
+    let here = null;
     for (const one of byId("tree").querySelectorAll("a")) {
-      const here = one.getAttribute("href") === `#${view}${["ladder", "data"].includes(view) && rest.length ? `/${rest[0]}` : ""}`;
-      if (here) one.setAttribute("aria-current", "page");
+      const is = one.getAttribute("href") === `#${view}${["ladder", "data"].includes(view) && rest.length ? `/${rest[0]}` : ""}`;
+      if (is) one.setAttribute("aria-current", "page");
       else one.removeAttribute("aria-current");
+      if (is) here = one;
     }
-    if (view === "ladder") this.show(() => ladder(this, main, Number(rest[0]), rest[1] === undefined ? null : Number(rest[1])), location.hash);
-    else if (view === "data") this.show(() => dataFile(this, main, decodeURIComponent(rest[0] ?? "")), location.hash);
-    else if (VIEWS[view]) this.show(() => VIEWS[view](this, main), location.hash);
+    here?.scrollIntoView({ block: "nearest" });
+    main.ariaLabel = here?.textContent ?? "Program";
+    document.title = `${here ? `${here.textContent} – ` : ""}${this.project.file} – rungs`;
+    main.dataset.view = view;
+    if (view === "ladder") this.show(() => ladder(this, main, Number(rest[0]), rest[1] === undefined ? null : Number(rest[1])));
+    else if (view === "data") this.show(() => dataFile(this, main, decodeURIComponent(rest[0] ?? "")));
+    else if (VIEWS[view]) this.show(() => VIEWS[view][1](this, main));
     else if (this.project.routines.length) location.replace(`#ladder/${this.project.routines[0].number}`);
+    else location.replace("#controller");
   }
 
   /** Shows a view; what the one before followed is followed no more. */
@@ -96,24 +149,50 @@ class App {
     return open(this, address);
   }
 
+  /** The watch list of this program, as it was when the page was left. */
+  #kept() {
+    try {
+      const kept = JSON.parse(localStorage.getItem(this.key) ?? "[]");
+      return Array.isArray(kept) ? kept.filter((one) => typeof one === "string").slice(0, 500) : [];
+    } catch {
+      return [];
+    }
+  }
+
+  #keep() {
+    try {
+      localStorage.setItem(this.key, JSON.stringify(this.watched));
+    } catch { /* It holds until the page is left. */ }
+  }
+
   watch(address) {
     if (!this.watched.includes(address)) this.watched.push(address);
+    this.#keep();
+    tell(`${address} is in the watch list.`);
   }
 
   unwatch(address) {
     this.watched = this.watched.filter((one) => one !== address);
+    this.#keep();
   }
 
   async trend(address) {
     const { traces } = await get("/api/trend");
-    await post("/api/trend", { addresses: [...new Set([...traces.map((one) => one.address), address])] });
-    this.goView("trend");
+    const addresses = [...new Set([...traces.map((one) => one.address), address])];
+    if (await post("/api/trend", { addresses })) this.goView("trend");
+  }
+
+  /** Asks for a new value of an address. */
+  edit(address) {
+    if (this.readOnly) return;
+    this.ask(`New value of ${address}`, shown(this.live.values.get(address)).replaceAll(" ", ""), (text) =>
+      post("/api/write", { address, value: typed(text) }));
   }
 
   /** Asks for a text. */
   ask(question, text, then) {
     const dialog = byId("ask");
-    const input = el("input", { type: "text", value: text, ariaLabel: question, autocomplete: "off" });
+    const input = el("input", { type: "text", value: text, autocomplete: "off" });
     const form = el("form", { method: "dialog", on: { submit: () => then(input.value) } },
       el("label", {}, question, input),
       el("div", { class: "row" }, el("button", { type: "submit" }, "Write"), button("Cancel", "Change nothing", () => dialog.close())));
@@ -122,15 +201,25 @@ class App {
     input.select();
   }
 
-  key(event) {
+  pressed(event) {
     if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k") {
       event.preventDefault();
       this.search();
       return;
     }
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
-    if (event.key === "Escape") close(this.live);
-    if (this.readOnly || event.target.closest("input, select, textarea, button, a, summary, [role=button]")) return;
+    if (event.key === "Escape") {
+      if (document.body.classList.contains("tree-open")) {
+        this.drawer(false);
+        byId("tree-button").focus();
+      } else close(this);
+      return;
+    }
+    if (event.target.closest("input, select, textarea, [role=menuitem]")) return;
+    // What has the focus takes Space for itself.
+    const own = event.key === " " && event.target.closest("button, a, summary, [role=button]");
+    if (event.key === "?") this.help();
+    if (this.readOnly || own) return;
     const does = { " ": () => this.toggleRun(), s: () => this.step(1), S: () => this.step(10), b: () => this.back(1), B: () => this.back(10) }[event.key];
     if (!does) return;
     event.preventDefault();

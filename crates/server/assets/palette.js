@@ -5,14 +5,25 @@ import { byId, el } from "./dom.js";
 
 export function palette(app) {
   const dialog = byId("palette");
-  const input = el("input", { type: "search", ariaLabel: "Search addresses, symbols, comments, instructions", placeholder: "T4:0, a symbol, a word, TON * 0.01 >=500 *", autocomplete: "off" });
-  const list = el("ul", { role: "listbox", ariaLabel: "Found" });
+  const input = el("input", { type: "search", role: "combobox", ariaLabel: "Search addresses, symbols, comments, instructions, views", ariaExpanded: "true",
+    ariaAutoComplete: "list", "aria-controls": "found", placeholder: "T4:0, a symbol, a word, TON * 0.01 >=500 *", autocomplete: "off" });
+  const list = el("ul", { role: "listbox", id: "found", ariaLabel: "Found" });
   let asked = 0;
   let at = 0;
   const choose = (index) => {
     at = Math.max(0, Math.min(list.children.length - 1, index));
     [...list.children].forEach((item, number) => item.setAttribute("aria-selected", String(number === at)));
     list.children[at]?.scrollIntoView({ block: "nearest" });
+    if (list.children[at]) input.setAttribute("aria-activedescendant", `found-${at}`);
+    else input.removeAttribute("aria-activedescendant");
+  };
+  const places = (text) => app.places.filter(([name]) => name.toLowerCase().includes(text.toLowerCase())).slice(0, 12)
+    .map(([name, kind, hash]) => item(name, kind, () => app.goView(hash)));
+  const note = (text) => el("li", { role: "option", ariaDisabled: "true", class: "more" }, text);
+  const show = (items) => {
+    items.forEach((one, number) => { one.id = `found-${number}`; });
+    list.replaceChildren(...items);
+    choose(0);
   };
   const item = (text, kind, open) => el("li", { role: "option", on: { click: () => {
     dialog.close();
@@ -22,7 +33,7 @@ export function palette(app) {
     const mine = ++asked;
     const text = input.value.trim();
     if (!text) {
-      list.replaceChildren();
+      show(places(""));
       return;
     }
     const [uses, found] = await Promise.all([
@@ -31,27 +42,41 @@ export function palette(app) {
     ]);
     if (mine !== asked) return;
     const items = [];
+    const views = places(text);
     if (uses) items.push(item(`${uses.address} ${uses.symbol}`, `address, ${uses.uses.length + uses.left_out} uses`, () => app.open(uses.address)));
+    items.push(...views);
     for (const hit of found.hits.slice(0, 100)) {
       const where = hit.rung === null ? "" : `${app.routineName(hit.routine)} rung ${hit.rung}: `;
       items.push(item(where + hit.text, hit.kind, () => (hit.rung === null ? app.open(hit.text) : app.goto(hit.routine, hit.rung))));
     }
     const more = found.hits.length - 100 + found.left_out;
-    if (more > 0) items.push(el("li", { class: "more" }, `${more} more; search for something narrower`));
-    if (!items.length) items.push(el("li", { class: "more" }, found.problem ?? "Nothing found."));
-    list.replaceChildren(...items);
-    choose(0);
+    if (more > 0) items.push(note(`${more} more; search for something narrower`));
+    if (!items.length) items.push(note(found.problem ?? "Nothing found."));
+    show(items);
   };
   let timer = 0;
+  let waits = false;
   input.addEventListener("input", () => {
     clearTimeout(timer);
-    timer = setTimeout(look, 120);
+    waits = true;
+    timer = setTimeout(now, 120);
   });
-  input.addEventListener("keydown", (event) => {
+  const now = async () => {
+    clearTimeout(timer);
+    waits = false;
+    await look();
+  };
+  input.addEventListener("keydown", async (event) => {
     if (event.key === "ArrowDown") choose(at + 1);
     else if (event.key === "ArrowUp") choose(at - 1);
-    else if (event.key === "Enter") list.children[at]?.click();
-    else return;
+    else if (event.key === "Escape") dialog.close();
+    else if (event.key === "Enter") {
+      event.preventDefault();
+      // What was typed counts, not what was found before.
+      if (waits) await now();
+      list.children[at]?.click();
+      return;
+    } else return;
     event.preventDefault();
   });
   dialog.replaceChildren(input, list);
@@ -59,6 +84,7 @@ export function palette(app) {
     if (dialog.open) return;
     dialog.showModal();
     input.select();
+    look();
   };
   byId("search-button").addEventListener("click", app.search);
 }

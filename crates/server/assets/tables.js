@@ -1,21 +1,15 @@
-// Views that are tables of values: data files, points, timers, forces, the watch list.
+// Views that are tables of values: the controller, data files, points, timers, forces, the watch list.
 
-import { get, post, control, tell } from "./api.js";
-import { button, el } from "./dom.js";
-import { shown, typed } from "./values.js";
-
-/** Asks for a value in a dialog and writes it. */
-function edit(app, address) {
-  if (app.readOnly) return;
-  app.ask(`New value of ${address}`, shown(app.live.values.get(address)).replaceAll(" ", ""), (text) =>
-    post("/api/write", { address, value: typed(text) }));
-}
+import { control, get, post, tell } from "./api.js";
+import { button, byId, el } from "./dom.js";
+import { actions, menu } from "./menu.js";
+import { RADICES, shown } from "./values.js";
 
 /** A cell that shows a value and can be edited. */
 function cell(app, address, radix) {
   return el("button", {
-    type: "button", class: "cell", title: `${address}: edit`, data: { address, radix: radix ?? "decimal" },
-    on: { click: () => edit(app, address) },
+    type: "button", class: "cell", title: `${address}: edit`, data: { address, radix: radix ?? "decimal" }, disabled: app.readOnly,
+    on: { click: () => app.edit(address) },
   }, "…");
 }
 
@@ -27,7 +21,13 @@ function follow(app, node, part) {
     for (const one of cells) {
       const now = live.values.get(one.dataset.address);
       if (one.classList.contains("lamp")) {
-        one.setAttribute("aria-checked", String(Boolean(now)));
+        if (one.getAttribute("role") === "switch") one.setAttribute("aria-checked", String(Boolean(now)));
+        else one.ariaLabel = `${one.dataset.name} is ${now === undefined ? "not known yet" : now ? "on" : "off"}`;
+        one.classList.toggle("lit", Boolean(now));
+        continue;
+      }
+      if (one.type === "range") {
+        if (one !== document.activeElement && typeof now === "number") one.value = now;
         continue;
       }
       const text = shown(now, one.dataset.radix);
@@ -51,43 +51,82 @@ export async function dataFile(app, view, label, from = 0, radix) {
   const file = app.project.data_files.find((one) => one.label === data.label);
   const chosen = radix ?? data.radix;
   const choose = el("select", { ariaLabel: "Radix", on: { change: () => app.show(() => dataFile(app, view, label, from, choose.value)) } },
-    ["decimal", "binary", "hex"].map((one) => el("option", { value: one, selected: one === chosen }, one)));
+    RADICES.map((one) => el("option", { value: one, selected: one === chosen }, one)));
   const page = (to, text) => button(text, text, () => app.show(() => dataFile(app, view, label, to, chosen)), { disabled: to < 0 || to >= file.elements });
   const rows = data.elements.map((element) => el("tr", {},
     el("th", { scope: "row" }, link(app, element.address)),
     data.columns.map((column) => el("td", {}, cell(app, element.address + column, column === "" ? chosen : "decimal"))),
     el("td", { class: "symbol" }, element.symbol), el("td", { class: "description" }, element.description)));
   view.replaceChildren(
-    el("h2", {}, `${data.label} ${file.title}`),
+    el("h2", {}, app.dataName(file)),
     el("div", { class: "row" }, el("label", {}, "Radix ", choose),
       file.elements > PAGE ? [page(from - PAGE, "Previous"), page(from + PAGE, "Next"), `${from} to ${Math.min(from + PAGE, file.elements) - 1} of ${file.elements}`] : null),
-    el("div", { class: "scroll" }, el("table", {},
+    el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: app.dataName(file) }, el("table", {},
       el("thead", {}, el("tr", {}, el("th", {}, "Address"), data.columns.map((column) => el("th", {}, column || "Value")), el("th", {}, "Symbol"), el("th", {}, "Description"))),
       el("tbody", {}, rows))));
   return follow(app, view, "table");
 }
 
+/** What is known of the controller. */
+export function controller(app, view) {
+  const { properties, notes } = app.project;
+  view.replaceChildren(el("h2", {}, "Controller properties"),
+    el("dl", { class: "facts" }, properties.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)])),
+    notes.length ? el("h3", {}, "What must be known of this simulation") : "", el("ul", {}, notes.map((note) => el("li", {}, note))));
+}
+
 /** Switches and lamps, sliders and numbers for every point the program uses. */
 export function points(app, view) {
+  const words = [];
   const item = (point) => {
-    const name = el("span", { class: "name" }, link(app, point.address), el("span", { class: "symbol" }, point.symbol), el("span", { class: "description" }, point.description));
-    if (point.analog) {
-      const slider = el("input", { type: "range", min: 0, max: 32767, ariaLabel: `${point.address} ${point.symbol}`, on: {
-        input: () => post("/api/write", { address: point.address, value: Number(slider.value) }) } });
-      return el("li", {}, name, cell(app, point.address), point.input && !app.readOnly ? slider : null);
+    const { address, symbol, input, analog } = point;
+    const force = el("strong", { class: "forced-word" });
+    if (!analog) words.push([address, force]);
+    const more = button("⋯", `What can be done with ${address}`, () =>
+      menu(more, `${address} ${symbol}`.trim(), actions(app, { bit: analog ? null : address, forcible: !analog, values: analog ? [address] : [] })),
+    { class: "more", ariaLabel: `What can be done with ${address}`, ariaHasPopup: "menu" });
+    const name = el("span", { class: "name" }, link(app, address), el("span", { class: "symbol" }, symbol), el("span", { class: "description" }, point.description), force);
+    if (analog) {
+      const slider = el("input", { type: "range", min: 0, max: 32767, ariaLabel: `${address} ${symbol}`, data: { address }, on: {
+        input: () => post("/api/write", { address, value: Number(slider.value) }) } });
+      return el("li", {}, cell(app, address), name, input && !app.readOnly ? slider : null, more);
     }
-    const lamp = el("button", {
-      type: "button", role: "switch", class: `lamp ${point.input ? "input" : "output"}`, ariaLabel: `${point.address} ${point.symbol}`,
-      data: { address: point.address }, disabled: !point.input || app.readOnly,
-      on: { click: () => post("/api/write", { address: point.address, value: lamp.getAttribute("aria-checked") !== "true" }) },
-    });
-    return el("li", {}, lamp, name);
+    const lamp = input
+      ? el("button", { type: "button", role: "switch", class: "lamp input", ariaLabel: `${address} ${symbol}`, data: { address }, disabled: app.readOnly,
+        on: { click: () => post("/api/write", { address, value: lamp.getAttribute("aria-checked") !== "true" }) } })
+      : el("span", { role: "img", class: "lamp output", data: { address, name: `${address} ${symbol}`.trim() } });
+    return el("li", {}, lamp, name, more);
   };
-  const list = (input) => el("ul", { class: "points" }, app.project.points.filter((point) => point.input === input).map(item));
+  const list = (input) => {
+    const all = app.project.points.filter((point) => point.input === input);
+    return all.length ? el("ul", { class: "points" }, all.map(item)) : el("p", {}, "The program names none.");
+  };
+  const gauges = el("dl", { class: "gauges" });
   view.replaceChildren(el("h2", {}, "Inputs and outputs"),
-    el("div", { class: "columns" }, el("section", {}, el("h3", {}, "Inputs"), list(true)), el("section", {}, el("h3", {}, "Outputs"), list(false))),
-    el("div", { id: "gauges" }));
-  return follow(app, view, "table");
+    el("div", { class: "columns" }, el("section", {}, el("h3", {}, "Inputs"), list(true)), el("section", {}, el("h3", {}, "Outputs"), list(false))), gauges);
+  const stop = follow(app, view, "table");
+  const stopForces = app.live.listen((_, { status }) => {
+    const { forces } = app;
+    for (const [address, node] of words) {
+      const state = forces.get(address);
+      const text = state === undefined ? "" : `forced ${state ? "ON" : "OFF"}${status.forces_enabled ? "" : " (disabled)"}`;
+      if (node.textContent !== text) node.textContent = text;
+    }
+    showGauges(gauges, status.plant);
+  });
+  return () => {
+    stop();
+    stopForces();
+  };
+}
+
+/** The plant in figures. */
+export function showGauges(list, plant) {
+  const rows = (plant?.gauges ?? []).map(([element, quantity, value, unit]) => [`${element} ${quantity}`, `${Number(value.toFixed(2))} ${unit}`.trim()]);
+  const now = JSON.stringify(rows);
+  if (list.dataset.shown === now) return;
+  list.dataset.shown = now;
+  list.replaceChildren(...rows.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
 }
 
 /** Timers and counters with bars. */
@@ -98,9 +137,9 @@ export function timers(app, view) {
     const seconds = el("span", { class: "seconds" });
     bars.push([timer, bar, seconds]);
     return el("tr", {}, el("th", { scope: "row" }, link(app, timer.address)), el("td", {}, timer.kind), el("td", { class: "symbol" }, timer.symbol),
-      el("td", {}, cell(app, timer.accumulated)), el("td", {}, timer.preset ? cell(app, timer.preset) : "in the rung"), el("td", {}, bar, seconds), el("td", {}, cell(app, timer.done)));
+      el("td", {}, cell(app, timer.accumulated)), el("td", {}, timer.preset ? cell(app, timer.preset) : "in the rung"), el("td", { class: "progress" }, bar, seconds), el("td", {}, cell(app, timer.done)));
   });
-  view.replaceChildren(el("h2", {}, "Timers and counters"), el("div", { class: "scroll" }, el("table", {},
+  view.replaceChildren(el("h2", {}, "Timers and counters"), el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: "Timers and counters" }, el("table", {},
     el("thead", {}, el("tr", {}, ["Address", "Kind", "Symbol", "Accum", "Preset", "Progress", "Done"].map((text) => el("th", {}, text)))),
     el("tbody", {}, rows))));
   const stop = follow(app, view, "table");
@@ -128,40 +167,56 @@ export function forces(app, view) {
   view.replaceChildren(el("h2", {}, "Forces"),
     app.readOnly ? null : el("div", { class: "row" }, enabled, button("Remove all", "Remove all forces", () => control({ do: "clear-forces" }))),
     app.readOnly ? null : el("div", { class: "row" }, address, button("Force on", "Force on", () => install(true)), button("Force off", "Force off", () => install(false))),
-    el("table", {}, el("thead", {}, el("tr", {}, el("th", {}, "Address"), el("th", {}, "Forced to"), el("th", {}, ""))), body));
+    el("table", {}, el("thead", {}, el("tr", {}, ["Address", "Symbol", "Forced to", "Value", "Action"].map((text) => el("th", {}, text)))), body));
   let last = null;
-  return app.live.listen((_, live) => {
+  let stopValues = null;
+  const symbols = new Map(app.project.points.map((point) => [point.address, point.symbol]));
+  const stop = app.live.listen((_, live) => {
     enabled.textContent = live.status.forces_enabled ? "Disable forces" : "Enable forces";
     const now = JSON.stringify(live.status.forces);
     if (now === last) return;
     last = now;
-    const rows = live.status.forces.map(([at, on]) => el("tr", {}, el("th", { scope: "row" }, link(app, at)), el("td", {}, on ? "ON" : "OFF"),
+    stopValues?.();
+    const rows = live.status.forces.map(([at, on]) => el("tr", {}, el("th", { scope: "row" }, link(app, at)), el("td", { class: "symbol" }, symbols.get(at) ?? ""), el("td", {}, on ? "ON" : "OFF"),
+      el("td", {}, cell(app, at)),
       el("td", {}, app.readOnly ? null : button("Remove", `Remove the force of ${at}`, () => post("/api/force", { address: at, state: null })))));
-    body.replaceChildren(...(rows.length ? rows : [el("tr", {}, el("td", { colSpan: 3 }, "No forces are installed."))]));
+    body.replaceChildren(...(rows.length ? rows : [el("tr", {}, el("td", { colSpan: 5 }, "No forces are installed."))]));
+    stopValues = follow(app, body, "forces");
   });
+  return () => {
+    stop();
+    stopValues?.();
+  };
 }
 
-/** Addresses a person follows. */
-export function watch(app, view) {
+/** Addresses a person follows; they are kept in this browser. */
+export async function watch(app, view) {
   const address = el("input", { type: "text", ariaLabel: "Address to watch", placeholder: "T4:0.ACC", size: 14, autocomplete: "off" });
   const again = () => app.show(() => watch(app, view));
+  const known = (text) => get(`/api/uses?address=${encodeURIComponent(text)}`);
   const form = el("form", { class: "row", on: { submit: async (event) => {
     event.preventDefault();
     const text = address.value.trim();
+    if (!text) return;
     try {
-      await get(`/api/uses?address=${encodeURIComponent(text)}`);
-      app.watch(text);
-      again();
+      // Symbols are followed by their address.
+      app.watch((await known(text)).address);
+      await again();
+      byId("view").querySelector("form input")?.focus();
     } catch (problem) {
       tell(problem.message, "wrong");
     }
   } } }, address, el("button", { type: "submit" }, "Watch"));
-  const rows = app.watched.map((one) => el("tr", {}, el("th", { scope: "row" }, link(app, one)), el("td", {}, cell(app, one)),
+  const about = await Promise.all(app.watched.map((one) => known(one).catch(() => ({ symbol: "", description: "not in this program" }))));
+  const rows = app.watched.map((one, index) => el("tr", {}, el("th", { scope: "row" }, link(app, one)), el("td", { class: "symbol" }, about[index].symbol), el("td", {}, cell(app, one)),
+    el("td", { class: "description" }, about[index].description),
     el("td", {}, button("Remove", `Remove ${one}`, () => {
       app.unwatch(one);
       again();
     }))));
   view.replaceChildren(el("h2", {}, "Watch list"), form,
-    el("table", {}, el("thead", {}, el("tr", {}, el("th", {}, "Address"), el("th", {}, "Value"), el("th", {}, ""))), el("tbody", {}, rows)));
+    el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: "Watch list" }, el("table", {},
+      el("thead", {}, el("tr", {}, ["Address", "Symbol", "Value", "Description", "Action"].map((text) => el("th", {}, text)))),
+      el("tbody", {}, rows.length ? rows : el("tr", {}, el("td", { colSpan: 5 }, "Nothing is watched yet."))))));
   return follow(app, view, "table");
 }

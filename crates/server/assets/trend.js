@@ -1,7 +1,7 @@
 // Trends: chosen values over simulated time, with a cursor, as a table and as a picture.
 
 import { get, post, tell } from "./api.js";
-import { button, el, time } from "./dom.js";
+import { button, colour, el, time } from "./dom.js";
 
 /** Seconds a chart spans. */
 const SPANS = [5, 10, 30, 60, 300, 1800];
@@ -32,7 +32,7 @@ export function trend(app, view) {
   let cursor = null;
   let busy = false;
   let span = 30;
-  const canvas = el("canvas", { role: "img", ariaLabel: "Chart of the values followed", tabIndex: 0 });
+  const canvas = el("canvas", { role: "img", ariaLabel: "Chart of the values followed; left and right move the cursor", tabIndex: 0 });
   const legend = el("tbody");
   const address = el("input", { type: "text", ariaLabel: "Address to follow", placeholder: "T4:0.ACC", size: 14, autocomplete: "off" });
   const followed = () => traces.map((trace) => trace.address);
@@ -59,19 +59,18 @@ export function trend(app, view) {
       button("CSV", "Save as a table", csv),
       button("PNG", "Save as a picture", () => canvas.toBlob((blob) => blob && save("trend.png", blob)))),
     canvas,
-    el("table", {}, el("thead", {}, el("tr", {}, ["Line", "Address", "Now", "At the cursor", ""].map((text) => el("th", {}, text)))), legend));
+    el("table", {}, el("thead", {}, el("tr", {}, ["Line", "Address", "Now", "At the cursor", "Action"].map((text) => el("th", {}, text)))), legend));
 
   function style(index) {
-    const colours = getComputedStyle(document.documentElement);
-    return { colour: colours.getPropertyValue(`--line-${index % 6}`), dash: DASHES[index % DASHES.length] };
+    return { ink: colour(`--line-${index % 6}`), dash: DASHES[index % DASHES.length] };
   }
 
   function rows() {
     legend.replaceChildren(...traces.map((trace, index) => {
       const sample = el("canvas", { width: 40, height: 12, ariaHidden: "true" });
       const context = sample.getContext("2d");
-      const { colour, dash } = style(index);
-      Object.assign(context, { strokeStyle: colour, lineWidth: 2 });
+      const { ink, dash } = style(index);
+      Object.assign(context, { strokeStyle: ink, lineWidth: 2 });
       context.setLineDash(dash);
       context.beginPath();
       context.moveTo(0, 6);
@@ -94,15 +93,15 @@ export function trend(app, view) {
       canvas.height = height * ratio;
     }
     const context = canvas.getContext("2d");
-    const colours = getComputedStyle(document.documentElement);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.fillStyle = colours.getPropertyValue("--paper");
+    context.fillStyle = colour("--paper");
     context.fillRect(0, 0, width, height);
     const end = app.live.status?.time ?? 0;
     const start = end - span;
+    const scale = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
     const x = (seconds) => ((seconds - start) / span) * width;
-    context.strokeStyle = context.fillStyle = colours.getPropertyValue("--faint");
-    context.font = "12px sans-serif";
+    context.strokeStyle = context.fillStyle = colour("--faint");
+    context.font = `${12 * scale}px sans-serif`;
     context.lineWidth = 1;
     for (let step = 0; step <= 5; step += 1) {
       const seconds = start + (span * step) / 5;
@@ -120,8 +119,8 @@ export function trend(app, view) {
       const least = Math.min(0, ...values);
       const most = Math.max(1, ...values);
       const y = (value) => bottom - ((value - least) / (most - least)) * (bottom - top);
-      const { colour, dash } = style(index);
-      Object.assign(context, { strokeStyle: colour, fillStyle: colour, lineWidth: 2 });
+      const { ink, dash } = style(index);
+      Object.assign(context, { strokeStyle: ink, fillStyle: ink, lineWidth: 2 });
       context.setLineDash(dash);
       context.beginPath();
       seen.forEach(([, seconds, value], number) => {
@@ -142,13 +141,13 @@ export function trend(app, view) {
       }
     });
     if (cursor !== null) {
-      context.strokeStyle = colours.getPropertyValue("--ink");
+      context.strokeStyle = colour("--ink");
       context.lineWidth = 1;
       context.beginPath();
       context.moveTo(cursor * width, 0);
       context.lineTo(cursor * width, height);
       context.stroke();
-      context.fillStyle = colours.getPropertyValue("--ink");
+      context.fillStyle = colour("--ink");
       context.fillText(`${(start + cursor * span).toFixed(3)} s`, Math.min(cursor * width + 4, width - 70), 12);
     }
   }
@@ -167,10 +166,12 @@ export function trend(app, view) {
     busy = false;
   }
 
-  canvas.addEventListener("pointermove", (event) => {
+  const point = (event) => {
     cursor = Math.max(0, Math.min(1, event.offsetX / canvas.clientWidth));
     draw();
-  });
+  };
+  canvas.addEventListener("pointermove", point);
+  canvas.addEventListener("pointerdown", point);
   canvas.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: -0.01, ArrowRight: 0.01 }[event.key];
     if (!step) return;
@@ -187,8 +188,10 @@ export function trend(app, view) {
   });
   load();
   addEventListener("resize", draw);
+  addEventListener("themechange", rows);
   return () => {
     stop();
     removeEventListener("resize", draw);
+    removeEventListener("themechange", rows);
   };
 }

@@ -67,6 +67,10 @@ pub struct Status {
     pub scan_time: Duration,
     /// Why the machine has stopped.
     pub fault: Option<String>,
+    /// Code of the fault, where faults of the dialect have one.
+    pub fault_code: Option<u16>,
+    /// What to look at, where that is known.
+    pub advice: Option<&'static str>,
     /// Where: routine and rung.
     pub fault_site: Option<(u16, u16)>,
     /// Installed forces.
@@ -317,6 +321,8 @@ impl Engine {
             time: controller.now(),
             scan_time: self.bench.scan_time(),
             fault_site: stopped.as_ref().and_then(|_| state.machine.fault_site()),
+            fault_code: stopped.as_ref().map(|stop| stop.code).filter(|code| *code != 0),
+            advice: stopped.as_ref().and_then(crate::faults::advice),
             fault: stopped.map(|stop| stop.text),
             forces: state.forces.iter().map(|(address, on)| (address.clone(), *on)).collect(),
             forces_enabled: state.machine.forces_enabled(),

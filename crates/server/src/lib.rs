@@ -6,6 +6,7 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::unreachable))]
 
 pub mod engine;
+pub mod faults;
 pub mod plant;
 pub mod view;
 mod web;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use analysis::search::{Query, search_domore};
 use domore::documentation::Documentation;
-use domore::instruction::{self, Kind};
+use domore::instruction::{self, Effect, Kind};
 use domore::memory::{ElementType, Map};
 use domore::xref::CrossReference;
 use domore::{CodeBlock, Instruction, Project};
@@ -50,6 +50,10 @@ impl DoMoreProgram {
             file: file_name,
             dialect: "do-more",
             controller: project.controller().to_owned(),
+            properties: vec![
+                ("Controller", project.controller().to_owned()),
+                ("Code-blocks", project.code_blocks().count().to_string()),
+            ],
             routines: (0..).zip(project.code_blocks()).map(routine).collect(),
             data_files: map.blocks().iter().map(data_file).collect(),
             points: points(&xref, &documentation),
@@ -154,6 +158,8 @@ fn instruction(instruction: &Instruction) -> InstructionView {
         mnemonic: instruction.mnemonic.clone(),
         operands: instruction.operands.clone(),
         values,
+        flags: Vec::new(),
+        contact: entry.is_some_and(|entry| matches!(entry.effect, Effect::Contact { .. })) && bit.is_some(),
         forcible: bit.as_ref().is_some_and(|bit| bit.starts_with(['X', 'Y'])),
         bit,
     }

@@ -49,6 +49,8 @@ pub struct Outline {
     pub dialect: &'static str,
     /// The controller in words.
     pub controller: String,
+    /// What else is known of it: name and value.
+    pub properties: Vec<(&'static str, String)>,
     /// Program files or code blocks.
     pub routines: Vec<RoutineView>,
     /// Data files or memory blocks.
@@ -158,10 +160,23 @@ pub struct InstructionView {
     pub operands: Vec<String>,
     /// Values a page keeps up to date in the drawing.
     pub values: Vec<ValueView>,
+    /// Flags at the right side of a box (EN, DN), in the order they are drawn.
+    pub flags: Vec<FlagView>,
     /// The bit a click changes.
     pub bit: Option<String>,
+    /// It is a contact that looks at that bit.
+    pub contact: bool,
     /// That bit can be forced.
     pub forcible: bool,
+}
+
+/// A flag beside a box.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlagView {
+    /// What is written in it.
+    pub name: &'static str,
+    /// Address of its bit; `None` where the control block is no element with flags.
+    pub address: Option<String>,
 }
 
 /// A value in a drawing.

@@ -9,8 +9,8 @@ use ladder::{Address, DataFile, FileType, Image, Instruction, Operand, Project, 
 use render::{Style, figure};
 
 use super::{
-    DataFileView, DataView, ElementView, HitView, HitsView, InstructionView, LISTED, Outline, PointView, Program,
-    RoutineView, RungView, TimerView, UseView, UsesView, ValueView,
+    DataFileView, DataView, ElementView, FlagView, HitView, HitsView, InstructionView, LISTED, Outline, PointView,
+    Program, RoutineView, RungView, TimerView, UseView, UsesView, ValueView,
 };
 
 /// The main image of a project, with what is known about it.
@@ -33,6 +33,7 @@ impl SlcProgram {
             file: file_name,
             dialect: "slc",
             controller: controller(image),
+            properties: properties(project),
             routines: image.ladder_files().map(routine).collect(),
             data_files: files(image).map(data_file).collect(),
             points: points(image, &xref),
@@ -51,6 +52,32 @@ impl SlcProgram {
 fn controller(image: &Image) -> String {
     let catalog = image.processor.catalog.as_deref().unwrap_or_default();
     format!("{catalog} {}", image.processor.name.as_deref().unwrap_or_default()).trim().to_owned()
+}
+
+/// What the vendor shows as controller properties and I/O configuration.
+fn properties(project: &Project) -> Vec<(&'static str, String)> {
+    let Image { processor, memory, io, .. } = &project.main;
+    let id = processor.program_id.map(|id| format!("{id:04X}"));
+    let memory = memory.filter(|_| !project.main.is_edited());
+    let words = memory.map(|memory| {
+        let (used, left) = (memory.instruction_words_used, memory.instruction_words_left);
+        format!("{used} instruction words used, {left} left")
+    });
+    let slot = |slot: &ladder::Slot| {
+        let catalog = slot.module.catalog.as_deref().unwrap_or("unknown module");
+        ("I/O slot", format!("{}: {catalog} {}", slot.number, slot.module.description).trim().to_owned())
+    };
+    let saved = [project.source.application.as_str(), project.source.saved_by.as_str()].join(" ");
+    let named = [
+        ("Processor type", controller(&project.main)),
+        ("Processor name", processor.project_name.trim().to_owned()),
+        ("Program ID", id.unwrap_or_default()),
+        ("Program memory", words.unwrap_or_default()),
+        ("Saved by", saved.trim().to_owned()),
+    ];
+    let known = named.into_iter().filter(|(_, value)| !value.is_empty());
+    let unknown = io.unknown.iter().map(|why| ("I/O configuration", why.clone()));
+    known.chain(io.slots.iter().map(slot)).chain(unknown).collect()
 }
 
 fn files(image: &Image) -> impl Iterator<Item = &DataFile> {
@@ -243,12 +270,20 @@ fn instruction(image: &Image, instruction: &Instruction) -> InstructionView {
             _ => {}
         }
     }
+    let drawn = match form.map(|form| form.drawing) {
+        Some(Drawing::Box { flags }) => flags,
+        _ => &[],
+    };
+    let flag = |name: &&'static str| FlagView { name, address: element.as_ref().map(|it| format!("{it}/{name}")) };
+    let flags = drawn.iter().map(flag).collect();
     let sign = form.is_some_and(|form| !matches!(form.drawing, Drawing::Box { .. }));
     let bit = instruction.operands.first().and_then(direct).filter(|address| sign && address.bit.is_some());
     InstructionView {
         mnemonic: instruction.mnemonic.to_string(),
         operands: instruction.operands.iter().map(ToString::to_string).collect(),
         values,
+        flags,
+        contact: bit.is_some() && form.is_some_and(|form| matches!(form.drawing, Drawing::Contact { .. })),
         forcible: bit.as_ref().is_some_and(|address| address.file_type.has_slots()),
         bit: bit.map(|address| address.to_string()),
     }

@@ -137,6 +137,10 @@ pub(crate) struct Status {
     /// Milliseconds from one scan to the next.
     scan_ms: f64,
     fault: Option<String>,
+    /// In hexadecimal, as S:6 is shown.
+    fault_code: Option<String>,
+    /// What to look at.
+    advice: Option<&'static str>,
     /// Routine and rung.
     fault_site: Option<(u16, u16)>,
     forces: Vec<(String, bool)>,
@@ -180,6 +184,8 @@ impl Status {
             time: status.time.as_secs_f64(),
             scan_ms: status.scan_time.as_secs_f64() * 1000.0,
             fault: status.fault.clone(),
+            fault_code: status.fault_code.map(|code| format!("{code:04X}")),
+            advice: status.advice,
             fault_site: status.fault_site,
             forces: status.forces.clone(),
             forces_enabled: status.forces_enabled,

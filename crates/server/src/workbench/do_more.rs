@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Duration;
 
-use domore::engine::{Handle, Machine, Mode, Program, Watch};
+use domore::engine::{Fault, Handle, Machine, Mode, Program, Watch};
 use ladder::Value;
 use render::scene::{Node, Scene};
 use sim::scenario::Controller;
@@ -196,7 +196,9 @@ impl Subject for DoMore {
     }
 
     fn fault_site(&self) -> Option<(u16, u16)> {
-        None
+        let Some(Fault::Unsupported { operation }) = self.machine.fault() else { return None };
+        let (block, rung, _) = self.program.spot(operation)?;
+        Some((u16::try_from(block).ok()?, u16::try_from(rung).ok()?))
     }
 
     fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {

@@ -1,101 +1,14 @@
 //! The workbench in a real browser: run, force, step back, edit, trend, record, replay.
 
-use std::net::SocketAddr;
+mod access;
+mod support;
+
 use std::path::Path;
-use std::sync::Arc;
 
 use rungs_tests::browser::{Browser, key};
-use server::plant::Plant;
-use server::view::{DoMoreProgram, Program, SlcProgram};
-use server::workbench::{Change, DoMore, Slc, Subject, Workbench};
-use server::{Access, engine};
 use sim::scenario::Scenario;
 
-const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/");
-
-fn project(path: &Path) -> ladder::Project {
-    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    convert::open(&bytes, &name, rss::Mode::Permissive).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-fn slc(path: &Path) -> (Box<dyn Subject>, Arc<dyn Program>) {
-    let project = project(path);
-    let program = sim::Program::compile(&project.main, &sim::Options::default()).expect("every instruction runs");
-    let machine = Slc::new(sim::Machine::new(program), &project.main);
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    (Box::new(machine), Arc::new(SlcProgram::new(name, project, Vec::new())))
-}
-
-fn do_more(path: &Path) -> (Box<dyn Subject>, Arc<dyn Program>) {
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let project = domore::text::read(&text).expect("reads").project;
-    let program = domore::engine::Program::compile(&project, &Default::default()).expect("compiles");
-    let machine = DoMore::new(program, &project);
-    (Box::new(machine), Arc::new(DoMoreProgram::new("program.txt".to_owned(), project, Vec::new()).expect("memory")))
-}
-
-/// Serves a program until the tests end; answers the address of its page.
-fn serve((machine, program): (Box<dyn Subject>, Arc<dyn Program>), plant: Option<&str>) -> String {
-    let mut bench = Workbench::new(machine);
-    if let Some(name) = plant {
-        let text = std::fs::read_to_string(format!("{EXAMPLES}{name}")).expect(name);
-        let plant = Plant::parse(&text).unwrap_or_else(|why| panic!("{name}: {why}"));
-        bench.change(Change::Plant(Some(Box::new(plant)))).expect("wires");
-    }
-    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-        runtime.block_on(async {
-            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-            told.send(listener.local_addr().expect("bound")).expect("the test waits");
-            let engine = engine::start(bench).expect("a thread");
-            server::serve(listener, engine, program, Access::default(), std::future::pending()).await
-        })
-    });
-    format!("http://{}/", address.recv().expect("the server starts"))
-}
-
-fn motor() -> String {
-    serve(slc(Path::new(&format!("{EXAMPLES}motor/motor.RSS"))), None)
-}
-
-/// The page of one view.
-fn show(browser: &Browser, page: &str, view: &str) {
-    browser.go(&format!("{page}#{view}"));
-    browser.wait_for("document.querySelector('#view h2') && document.querySelector('#status').textContent");
-}
-
-fn lamp(address: &str) -> String {
-    format!(".lamp[data-address='{address}']")
-}
-
-fn toggle(browser: &Browser, address: &str) {
-    let lamp = lamp(address);
-    let before = browser.is(&format!("document.querySelector(\"{lamp}\").ariaChecked === 'true'"));
-    browser.click(&lamp);
-    browser.wait_for(&format!("document.querySelector(\"{lamp}\").ariaChecked === '{}'", !before));
-}
-
-fn scan(browser: &Browser) -> f64 {
-    browser.number("document.querySelector('#status').textContent.match(/scan (\\d+)/)[1]")
-}
-
-fn steps(browser: &Browser, count: usize) {
-    for _ in 0..count {
-        let before = scan(browser);
-        browser.click("#step");
-        browser.wait_for(&format!("document.querySelector('#status').textContent.includes('scan {} ')", before + 1.0));
-    }
-}
-
-/// Stop button and overload relay are healthy when closed.
-fn make_ready(browser: &Browser, page: &str) {
-    show(browser, page, "points");
-    browser.wait_for(&format!("document.querySelector(\"{}\")?.ariaChecked === 'false'", lamp("I:0.0/1")));
-    toggle(browser, "I:0.0/1");
-    toggle(browser, "I:0.0/2");
-}
+use support::*;
 
 #[test]
 fn the_motor_starts_and_every_scan_can_be_gone_back() {
@@ -275,7 +188,7 @@ fn a_plant_closes_the_loop_of_either_dialect() {
     show(&browser, &page, "points");
     toggle(&browser, "X0");
     steps(&browser, 3);
-    browser.wait_for(&format!("document.querySelector(\"{}\").ariaChecked === 'true'", lamp("Y0")));
+    browser.wait_for("document.querySelector(\".lamp[data-address='Y0']\").classList.contains('lit')");
     show(&browser, &page, "ladder/1");
     browser.wait_for("document.querySelector('.rung svg g.i.on') && document.querySelector('.rung svg path.w.on')");
     browser.screenshot("workbench-do-more");
