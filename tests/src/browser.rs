@@ -161,7 +161,11 @@ impl Browser {
     pub fn wait_for(&self, expression: &str) {
         let start = Instant::now();
         while !self.is(expression) {
-            assert!(start.elapsed() < PATIENCE, "{expression} did not become true");
+            if start.elapsed() >= PATIENCE {
+                let page = self.run("return location.href + '\\n' + document.body.innerText.slice(0, 2000)");
+                let page = page.as_str().unwrap_or_default().to_owned();
+                panic!("{expression} did not become true\n{page}\n{}", self.complaints().join("\n"));
+            }
             std::thread::sleep(Duration::from_millis(20));
         }
     }

@@ -41,7 +41,7 @@ export function fault(app, view) {
       site ? el("h3", {}, "The rung, with its values now") : "", site ? place : "", ...ways());
     if (!site) return;
     try {
-      const [one] = await get(`/api/routines/${site[0]}/rungs?from=${site[1]}&count=1&width=${view.clientWidth < 800 ? 48 : 100}`);
+      const [one] = await get(`/api/routines/${site[0]}/rungs?from=${site[1]}&count=1&width=${view.clientWidth < 800 ? 60 : 100}`);
       if (!one) return;
       rung = new Rung(app, site[0], one, place);
       rung.paint();

@@ -7,12 +7,15 @@ import { Rung, rem } from "./rung.js";
 /** Rungs asked for at once. */
 const CHUNK = 20;
 
+/** The fewest columns a drawing can have. */
+const NARROWEST = 60;
+
 /** Columns of a drawing that fit. Padding, the mark of the rung a link led to, and the bar that scrolls take their part. */
 function columns(view) {
   const column = 8 * (Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / 16);
   const style = getComputedStyle(view);
   const padding = Number.parseFloat(style.paddingLeft) + Number.parseFloat(style.paddingRight);
-  return Math.max(40, Math.min(160, Math.floor((view.clientWidth - padding - 24) / column)));
+  return Math.max(NARROWEST, Math.min(160, Math.floor((view.clientWidth - padding - 24) / column)));
 }
 
 export async function ladder(app, view, routine, goal, mark = true) {

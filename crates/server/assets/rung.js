@@ -37,12 +37,16 @@ export class Rung {
     // It holds what can be worked with: it is no picture to those who hear it.
     picture.setAttribute("role", "group");
     if (picture.hasAttribute("width")) {
-      picture.style.width = rem(Number(picture.getAttribute("width")));
-      picture.style.height = rem(Number(picture.getAttribute("height")));
+      const width = Number(picture.getAttribute("width"));
+      picture.style.width = rem(width);
+      // A little smaller is better than a bar under every rung.
+      picture.style.maxWidth = `max(100%, ${rem(0.8 * width)})`;
+      picture.style.height = "auto";
     }
     this.nodes = [...picture.querySelectorAll("path.w[data-n]")].map((node) => [Number(node.dataset.n), node]);
     this.parts = view.instructions.map((instruction, number) => this.#part(picture, instruction, number));
     section.replaceChildren(picture);
+    section.style.minHeight = "";
     this.#marks();
   }
 
