@@ -235,3 +235,8 @@ pub fn compare(old: Side<'_>, new: Side<'_>) -> Difference {
     difference.configuration = configuration::compare(old.image, new.image, &matched);
     difference
 }
+
+/// Rungs of two versions of a program that are the same rung, changed or not: the old and the new place.
+pub fn rung_pairs(old: &Image, new: &Image) -> Vec<(Place, Place)> {
+    logic::compare::<rslogix::Rslogix>(old, new, &mut Difference::default()).rungs
+}

@@ -7,6 +7,7 @@ use super::goals::{Goal, Goals};
 use super::inputs::Inputs;
 use super::pairs::Pairs;
 use super::play::{Both, Difference, apply, compare, enter};
+use super::progress::Progress;
 use super::random::Random;
 use super::side::{Seen, Side, Slc};
 use super::solve::Solver;
@@ -90,6 +91,8 @@ pub(crate) struct Campaign<'c, B: Side> {
     pub(super) looks: bool,
     /// The first difference, with all scans from power-up to it.
     pub(crate) found: Option<(Difference, Tape)>,
+    /// Who looks on from another thread.
+    progress: Option<&'c Progress>,
 }
 
 /// States kept.
@@ -112,6 +115,7 @@ pub(super) const TIMING: u16 = 0x4000;
 const SHORT_PACE: u32 = 10_000;
 
 impl<'c, B: Side> Campaign<'c, B> {
+    #[allow(clippy::too_many_arguments)] // called once
     pub(crate) fn new(
         both: Both<B>,
         pairs: &'c Pairs,
@@ -120,6 +124,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         (solver, surroundings): (&'c Solver<'c>, &'c Surroundings<'c>),
         presets: Vec<(u32, u32)>,
         (seed, budget, short): (u64, u64, bool),
+        progress: Option<&'c Progress>,
     ) -> Campaign<'c, B> {
         let seen = Seen::new(both.b.operations());
         let probe = both.a.fork();
@@ -161,6 +166,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             quiet: 0,
             looks: false,
             found: None,
+            progress,
         }
     }
 
@@ -206,9 +212,15 @@ impl<'c, B: Side> Campaign<'c, B> {
             }
             round += 1;
         }
-        if self.found.is_none() {
+        // Whoever stopped the run does not wait for arguments.
+        if self.found.is_none() && !self.is_stopped() {
             self.rule_out();
         }
+    }
+
+    /// Somebody wants no more scans.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.progress.is_some_and(Progress::is_stopped)
     }
 
     /// Looks for goals that no run can reach.
@@ -219,7 +231,7 @@ impl<'c, B: Side> Campaign<'c, B> {
     }
 
     pub(super) fn open(&self) -> bool {
-        self.found.is_none() && self.scans < self.budget
+        self.found.is_none() && self.scans < self.budget && !self.is_stopped()
     }
 
     /// Both sides are scanning and nothing was found.
@@ -311,7 +323,10 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.time += time;
         self.mode_changes += u64::from(program_run);
         self.quiet += 1;
-        if let Some(difference) = compare(&self.both, self.pairs, &mut self.buffers) {
+        if let Some(progress) = self.progress {
+            progress.at(self.scans);
+        }
+        if let Some(difference) = compare(&self.both.a, &self.both.b, self.pairs, &mut self.buffers) {
             let tape = self.history();
             self.found = Some((difference, tape));
             return;

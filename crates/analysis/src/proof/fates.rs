@@ -15,6 +15,33 @@ pub fn fates(project: &domore::Project) -> Option<Vec<RungFate>> {
     (!fates.is_empty()).then_some(fates)
 }
 
+/// A rung of a converted program and the one of the original it was made from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// Code block, by its place in the text, from 0.
+    pub block: usize,
+    /// Rung in it, from 0.
+    pub rung: usize,
+    /// Program file of the original.
+    pub file: u16,
+    /// Rung of the original, from 0.
+    pub from: u32,
+}
+
+/// Which rung was made from which, in the order of the converted program, by the marks above its rungs. Rungs without
+/// one are the conversion's own.
+pub fn origins(project: &domore::Project) -> Vec<Origin> {
+    let mut all = Vec::new();
+    for (block, code) in project.code_blocks().enumerate() {
+        for (number, rung) in code.rungs.iter().enumerate() {
+            let lines = rung.comment.iter().flat_map(|comment| &comment.lines);
+            let found = lines.filter_map(|line| origin(line)).next_back();
+            all.extend(found.map(|(file, from)| Origin { block, rung: number, file, from }));
+        }
+    }
+    all
+}
+
 fn fate(rung: &domore::Rung) -> Option<RungFate> {
     let lines = rung.comment.iter().flat_map(|comment| &comment.lines);
     let (mut place, mut person, mut conditions) = (None, None, Vec::new());

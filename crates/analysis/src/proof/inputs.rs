@@ -298,7 +298,7 @@ fn is_left_out(xref: &CrossReference<'_>, address: &Address, accesses: &[Access<
     data && accesses.iter().any(|access| access.role.reads()) && writers.peek().is_some() && writers.all(behind)
 }
 
-fn clock_field(address: &Address) -> Option<(&'static str, u32, u32)> {
+pub(crate) fn clock_field(address: &Address) -> Option<(&'static str, u32, u32)> {
     if address.bit.is_some() {
         return None;
     }

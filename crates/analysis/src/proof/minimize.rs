@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::inputs::Inputs;
 use super::pairs::Pairs;
 use super::play::{Both, Difference, apply, compare, enter};
+use super::progress::Progress;
 use super::side::Side;
 use super::tape::{Head, Set, Tape};
 
@@ -19,6 +20,8 @@ pub(crate) struct Player<'p, B: Side> {
     pub(crate) pairs: &'p Pairs,
     pub(crate) inputs: &'p Inputs<B::Target>,
     pub(crate) spent: u64,
+    /// Who may want to see what is found so far.
+    pub(crate) progress: Option<&'p Progress>,
 }
 
 type Scans = Vec<(Head, Vec<Set>)>;
@@ -45,7 +48,7 @@ impl<B: Side> Player<'_, B> {
             self.scratch.a.scan(time);
             self.scratch.b.scan(time);
             self.spent += 1;
-            if let Some(difference) = compare(&self.scratch, self.pairs, &mut buffers) {
+            if let Some(difference) = compare(&self.scratch.a, &self.scratch.b, self.pairs, &mut buffers) {
                 return Some((index + 1, difference));
             }
             let stopped = [self.scratch.a.stopped().is_some(), self.scratch.b.stopped().is_some()];
@@ -57,6 +60,10 @@ impl<B: Side> Player<'_, B> {
             }
         }
         None
+    }
+
+    fn goes_on(&self) -> bool {
+        self.spent < BUDGET && !self.progress.is_some_and(Progress::is_stopped)
     }
 
     /// Whether scans still show a difference; cuts behind it if so.
@@ -90,10 +97,10 @@ impl<B: Side> Player<'_, B> {
     /// Leaves out stretches of scans, long ones first. The first scan stays: it stores initial values.
     fn without_scans(&mut self, best: &mut Scans) {
         let mut size = best.len().div_ceil(2);
-        while size > 0 && self.spent < BUDGET {
+        while size > 0 && self.goes_on() {
             let mut at = 1;
             let mut shorter = false;
-            while at < best.len() && self.spent < BUDGET {
+            while at < best.len() && self.goes_on() {
                 let end = (at + size).min(best.len());
                 let mut candidate: Scans = best.iter().take(at).chain(best.iter().skip(end)).cloned().collect();
                 // Without the scans but with their last word on each input.
@@ -127,7 +134,7 @@ impl<B: Side> Player<'_, B> {
     /// Leaves out changes of inputs.
     fn without_sets(&mut self, best: &mut Scans) {
         let mut scan = best.len();
-        while scan > 0 && self.spent < BUDGET {
+        while scan > 0 && self.goes_on() {
             scan -= 1;
             let mut set = best.get(scan).map_or(0, |scan| scan.1.len());
             while set > 0 {

@@ -15,8 +15,10 @@ mod fates;
 mod goals;
 mod inputs;
 mod minimize;
+mod pairing;
 mod pairs;
 mod play;
+mod progress;
 mod random;
 mod report;
 mod scenario;
@@ -28,6 +30,7 @@ mod tape;
 mod unreachable;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use ladder::{Address, FileType, Image, Operand};
 
@@ -43,10 +46,12 @@ use solve::Solver;
 use unreachable::Surroundings;
 
 pub use check::{Refused, refused_domore, refused_slc};
-pub use fates::fates;
+pub use fates::{Origin, fates, origins};
 pub use goals::{Goal, GoalKind};
+pub use pairing::{AnySide, AnySideMut, Pairing, Row};
 pub use pairs::{Mapping, Mismatch};
 pub use play::Difference;
+pub use progress::Progress;
 pub use report::{Coverage, Driven, NOT_MODELLED, Report, RungCoverage, Scope, Verdict};
 pub use scenario::{Counterexample, Named};
 pub use side::{DoMore, Kind, Side, Slc};
@@ -71,6 +76,8 @@ pub struct Options {
     pub choices: sim::Choices,
     /// Readings where documentation of Do-more ends.
     pub domore_choices: domore::choices::Choices,
+    /// Where the run says how far it is, and hears that it shall end.
+    pub progress: Option<Arc<Progress>>,
 }
 
 impl Default for Options {
@@ -84,6 +91,7 @@ impl Default for Options {
             other: Named { family: Some("do-more".to_owned()), ..Named::default() },
             choices: sim::Choices::default(),
             domore_choices: domore::choices::Choices::default(),
+            progress: None,
         }
     }
 }
@@ -136,9 +144,7 @@ pub fn prove_domore(
     let program = program.map_err(|refusals| {
         refusals.iter().map(|refusal| format!("the other program cannot be run: {refusal}")).collect::<Vec<_>>()
     });
-    // What lies behind a file is another file there and here: an index beyond its file is outside the conditions a
-    // conversion states, and has to stop the original so that it is noticed.
-    let inside = Options { choices: options.choices.with(sim::Choice::IndirectStaysInFile), ..options.clone() };
+    let inside = Options { choices: choices_of_converted(options.choices), ..options.clone() };
     let (a, program) = match (slc(original, "original", &inside), program) {
         (Ok(a), Ok(program)) => (a, program),
         (a, b) => return Report::impossible(a.err().into_iter().chain(b.err()).flatten().collect(), options),
@@ -161,6 +167,13 @@ pub fn prove_domore(
         }
     }
     report
+}
+
+/// Readings of the original in a comparison with a converted program. What lies behind a file is another file there
+/// and here: an index beyond its file is outside the conditions a conversion states, and has to stop the original so
+/// that it is noticed.
+pub fn choices_of_converted(choices: sim::Choices) -> sim::Choices {
+    choices.with(sim::Choice::IndirectStaysInFile)
 }
 
 type Compiled = (Vec<sim::Approximation>, Slc);
@@ -195,18 +208,7 @@ fn prove<B: Side>(
     if image.data_files.iter().any(|file| file.has_forces()) {
         report.notes.push("the original holds forces: they were left out".to_owned());
     }
-    let persons = rungs(image, fates, &mut report);
-    let taint = taint::tainted(image, &xref, &a, &persons).unwrap_or_else(|| {
-        report.incomparable.push("which rungs run at all depends on rungs that were left to a person".to_owned());
-        let words = 0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX);
-        taint::Taint { bits: words.map(|word| (word, u16::MAX)).collect(), rungs: persons.clone(), stops: true }
-    });
-    report.not_compared = taint.bits.len();
-    let mut pairs = Pairs::new(image, &xref, &a, &b, map, &taint.bits);
-    let stated = fates.unwrap_or_default().iter().filter(|fate| !fate.conditions.is_empty());
-    pairs.persons = taint.rungs;
-    pairs.stops_unknown = taint.stops;
-    pairs.conditions = stated.map(|fate| (fate.file, fate.rung, fate.conditions.clone())).collect();
+    let pairs = pairs(image, &xref, (&a, &b), map, fates, &mut report);
     let inputs = Inputs::new(image, &xref, &a, &b, &pairs);
     report.take_map(&pairs, &inputs.left_out);
     if pairs.compared() == 0 {
@@ -231,12 +233,20 @@ fn prove<B: Side>(
     let loaded = base.a.machine.data();
     let surroundings = Surroundings { outline: &outline, loaded, inputs: &places, names: &names };
     let timers = timers(image, &base.a);
-    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, (&solver, &surroundings), timers, limits);
+    let progress = options.progress.as_deref();
+    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, (&solver, &surroundings), timers, limits, progress);
     campaign.run();
     report.take_run(&campaign, inputs.all.len());
+    if campaign.is_stopped() && campaign.found.is_none() {
+        let (scans, all) = (report.scans, options.scans);
+        report.notes.push(format!("the run was stopped by hand after {scans} of {all} scans"));
+    }
     if let Some((difference, tape)) = campaign.found.take() {
         let scratch = Both { a: base.a.fork(), b: base.b.fork() };
-        let mut player = Player { base: &base, scratch, pairs: &pairs, inputs: &inputs, spent: 0 };
+        if let Some(progress) = progress {
+            progress.shortens();
+        }
+        let mut player = Player { base: &base, scratch, pairs: &pairs, inputs: &inputs, spent: 0, progress };
         let shortest = if options.minimize { player.shortest(&tape) } else { None };
         let (tape, difference) = shortest.unwrap_or((tape, difference));
         let named = (&options.original, &options.other);
@@ -244,6 +254,30 @@ fn prove<B: Side>(
         report.found = Some((difference, example));
     }
     report
+}
+
+/// Finds what belongs together, without what rungs left to a person decide.
+fn pairs<B: Side>(
+    image: &Image,
+    xref: &CrossReference<'_>,
+    (a, b): (&Slc, &B),
+    map: &[Mapping],
+    fates: Option<&[RungFate]>,
+    report: &mut Report,
+) -> Pairs {
+    let persons = rungs(image, fates, report);
+    let taint = taint::tainted(image, xref, a, &persons).unwrap_or_else(|| {
+        report.incomparable.push("which rungs run at all depends on rungs that were left to a person".to_owned());
+        let words = 0..u32::try_from(a.machine.data().len()).unwrap_or(u32::MAX);
+        taint::Taint { bits: words.map(|word| (word, u16::MAX)).collect(), rungs: persons.clone(), stops: true }
+    });
+    report.not_compared = taint.bits.len();
+    let mut pairs = Pairs::new(image, xref, a, b, map, &taint.bits);
+    let stated = fates.unwrap_or_default().iter().filter(|fate| !fate.conditions.is_empty());
+    pairs.persons = taint.rungs;
+    pairs.stops_unknown = taint.stops;
+    pairs.conditions = stated.map(|fate| (fate.file, fate.rung, fate.conditions.clone())).collect();
+    pairs
 }
 
 /// Checks that every rung has a fate; answers those left to a person.

@@ -314,6 +314,49 @@ impl Pairs {
         spell(span, false, word, (kind == Kind::Bit).then_some(bit), kind)
     }
 
+    /// How the original spells a place of the other side.
+    pub(crate) fn original(&self, at: u32, kind: Kind) -> Option<String> {
+        if let Some(point) = self.points.iter().find(|point| point.b == at && kind == Kind::Bit) {
+            return Some(point.names.0.clone());
+        }
+        if kind == Kind::Text {
+            return self.texts.iter().find(|text| text.1 == at).map(|text| text.2.clone());
+        }
+        let span = self.spans.iter().find(|span| (span.b..span.b + 16 * span.words).contains(&at))?;
+        let bit = (kind == Kind::Bit).then_some((at & 15) as u16);
+        spell(span, true, (at - span.b) / 16, bit, kind)
+    }
+
+    /// Where the other side holds what is compared of a place of the original: its first bit there. `None`: it has no
+    /// place there.
+    pub(crate) fn beside(&self, at: u32, kind: Kind) -> Option<u32> {
+        if let Some(point) = self.points.iter().find(|point| point.a == at && kind == Kind::Bit) {
+            return Some(point.b);
+        }
+        if kind == Kind::Text {
+            return self.texts.iter().find(|text| text.0 == at).map(|text| text.1);
+        }
+        let (span, word, bit) = self.find(at)?;
+        Some(span.b + 16 * word + u32::from(bit))
+    }
+
+    /// How the other side spells a string of the original.
+    pub(crate) fn other_text(&self, at: u32) -> Option<String> {
+        self.texts.iter().find(|text| text.0 == at).map(|text| text.3.clone())
+    }
+
+    /// Which bits of each word of the original are compared, by the number of the word.
+    pub(crate) fn masks(&self) -> BTreeMap<u32, u16> {
+        let mut masks: BTreeMap<u32, u16> = BTreeMap::new();
+        let words = self.words.iter().map(|word| (word.a >> 4, word.mask));
+        let points = self.points.iter().map(|point| (point.a >> 4, 1 << (point.a & 15)));
+        let texts = self.texts.iter().flat_map(|text| (0..42).map(|word| ((text.0 >> 4) + word, u16::MAX)));
+        for (word, mask) in words.chain(points).chain(texts) {
+            *masks.entry(word).or_default() |= mask;
+        }
+        masks
+    }
+
     /// How the other side spells a field of the clock of the original.
     pub(crate) fn clock(&self, field: &str, original: &str) -> Option<String> {
         let slc = self.spans.iter().any(|span| span.other.contains(':'));

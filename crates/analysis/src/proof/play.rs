@@ -65,20 +65,20 @@ fn write<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, sets: &[Set]) 
 const MINOR_ERROR: u16 = 0x0020;
 
 /// Compares both sides after a scan.
-pub(crate) fn compare<B: Side>(both: &Both<B>, pairs: &Pairs, buffers: &mut [Vec<u8>; 2]) -> Option<Difference> {
-    match (both.a.stopped(), both.b.stopped()) {
-        (None, None) => pairs.difference(&both.a, &both.b, buffers).map(Difference::Value),
+pub(crate) fn compare<B: Side>(a: &Slc, b: &B, pairs: &Pairs, buffers: &mut [Vec<u8>; 2]) -> Option<Difference> {
+    match (a.stopped(), b.stopped()) {
+        (None, None) => pairs.difference(a, b, buffers).map(Difference::Value),
         // Stopped alike: outputs are off on both; data is what the fault left.
         (Some(_), Some(_)) => {
-            let on = pairs.output_on(&both.b);
+            let on = pairs.output_on(b);
             // Behind a minor error all rungs of the scan were executed: the data is that of any other scan.
-            let whole = both.a.machine.fault().is_some_and(|fault| fault.code == MINOR_ERROR);
-            on.or_else(|| if whole { pairs.left(&both.a, &both.b) } else { None }).map(Difference::Value)
+            let whole = a.machine.fault().is_some_and(|fault| fault.code == MINOR_ERROR);
+            on.or_else(|| if whole { pairs.left(a, b) } else { None }).map(Difference::Value)
         }
         // The inputs left the conditions under which the programs are the same: nothing follows from it.
-        (Some(_), None) if both.a.machine.fault().is_some_and(|fault| pairs.is_stated(fault)) => None,
+        (Some(_), None) if a.machine.fault().is_some_and(|fault| pairs.is_stated(fault)) => None,
         (Some(_), None) | (None, Some(_)) if pairs.stops_unknown => None,
-        (Some(why), None) => Some(Difference::OriginalStopped(why, both.a.machine.fault().map(|fault| fault.code))),
+        (Some(why), None) => Some(Difference::OriginalStopped(why, a.machine.fault().map(|fault| fault.code))),
         (None, Some(why)) => Some(Difference::OtherStopped(why)),
     }
 }
