@@ -563,6 +563,16 @@ pub struct ServeArguments {
     /// A project, SLC text, JSON project or Do-more text
     #[arg(value_name = "FILE")]
     pub program: PathBuf,
+    /// What was made of it, or another version of it: both run side by side with the same inputs
+    #[arg(value_name = "OTHER")]
+    pub other: Option<PathBuf>,
+    /// With OTHER: the address map `rungs migrate` wrote. Needed unless both are SLC programs: then every address means
+    /// itself
+    #[arg(long, value_name = "CSV", requires = "other")]
+    pub map: Option<PathBuf>,
+    /// Step through this scenario: a counterexample of `rungs prove`, a recording
+    #[arg(long, value_name = "TOML")]
+    pub replay: Option<PathBuf>,
     /// Port; 0 takes one that is free
     #[arg(long, value_name = "N", default_value_t = 8500)]
     pub port: u16,

@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use tokio::sync::{oneshot, watch};
 
 use crate::plant::Gauge;
-use crate::workbench::{Condition, Flow, Subject, Workbench};
+use crate::workbench::pair::First;
+use crate::workbench::{Condition, Flow, Pair, Subject, Workbench};
 
 /// Requests that wait at once; more are refused.
 const QUEUE: usize = 256;
@@ -89,6 +90,40 @@ pub struct Status {
     pub plant: Option<PlantStatus>,
     /// Why scans run no more, when not because a person paused.
     pub ended: Option<String>,
+    /// The tape that is played.
+    pub tape: Option<TapeStatus>,
+    /// What two machines side by side do.
+    pub pair: Option<PairStatus>,
+}
+
+/// A tape in a few words.
+#[derive(Clone, Debug, Default)]
+pub struct TapeStatus {
+    /// What it shows.
+    pub name: String,
+    /// Scans of it that have run.
+    pub at: u64,
+    /// Scans it has.
+    pub scans: u64,
+}
+
+/// Two machines side by side.
+#[derive(Clone, Debug, Default)]
+pub struct PairStatus {
+    /// Mode of the other machine.
+    pub mode: &'static str,
+    /// Why the other machine has stopped.
+    pub fault: Option<String>,
+    /// The first difference.
+    pub first: Option<First>,
+    /// Rows of the pairing that differ now.
+    pub differing: Vec<u32>,
+    /// The original stopped where a stated condition is not kept.
+    pub left_conditions: bool,
+    /// The run stops at the first difference.
+    pub stops: bool,
+    /// Installed forces, as the other program spells them.
+    pub forces: Vec<(String, bool)>,
 }
 
 /// A plant in figures.
@@ -110,6 +145,8 @@ pub struct Engine {
     until: Option<(Condition, u64)>,
     ended: Option<String>,
     slow: bool,
+    /// Of two machines side by side: a run stops in the scan of the first difference.
+    pub stops_at_difference: bool,
     /// When the next scan is due.
     due: Instant,
     shown: Instant,
@@ -193,6 +230,7 @@ pub fn start(bench: Workbench) -> std::io::Result<Handle> {
         until: None,
         ended: None,
         slow: false,
+        stops_at_difference: true,
         due: now,
         shown: now,
         number: 0,
@@ -291,7 +329,15 @@ impl Engine {
         }
         if !self.bench.scan(watched) {
             let stopped = self.bench.state().machine.controller().stopped();
-            self.end(stopped.map_or_else(|| "the controller is not in run mode".to_owned(), |stop| stop.text));
+            self.end(match (stopped, self.bench.tape()) {
+                (_, Some((tape, at))) if at >= tape.scans() => "the tape has ended".to_owned(),
+                (Some(stop), _) => stop.text,
+                (None, _) => "the controller is not in run mode".to_owned(),
+            });
+            return false;
+        }
+        if let Some(what) = self.stopping_difference(watched) {
+            self.end(what);
             return false;
         }
         if let Some((condition, left)) = &mut self.until {
@@ -305,6 +351,38 @@ impl Engine {
             }
         }
         self.pace != Pace::Paused
+    }
+
+    /// The first difference, if it arose in the last scan and the run shall stop there. A scan that was not watched
+    /// is looked at once more for its power flow.
+    pub fn stopping_difference(&mut self, watched: bool) -> Option<String> {
+        let machine = &self.bench.state().machine;
+        let first = machine.pair().and_then(Pair::first).filter(|_| self.stops_at_difference)?;
+        if first.scan != machine.controller().scans() {
+            return None;
+        }
+        let what = format!("the programs differ: {}", first.what);
+        if !watched {
+            // A recording does not allow it: the flow shown is an older one then, the values are not.
+            let _ = self.bench.back(0);
+        }
+        Some(what)
+    }
+
+    fn pair_status(&self) -> Option<PairStatus> {
+        let state = self.bench.state();
+        let pair = state.machine.pair()?;
+        let other = pair.other();
+        let spelled = |(address, on): (&String, &bool)| Some((pair.spelled(address).ok()?, *on));
+        Some(PairStatus {
+            mode: other.mode(),
+            fault: other.controller().stopped().map(|stop| stop.text),
+            first: pair.first().cloned(),
+            differing: pair.differing(),
+            left_conditions: pair.has_left_conditions(),
+            stops: self.stops_at_difference,
+            forces: state.forces.iter().filter_map(spelled).collect(),
+        })
     }
 
     /// Shows the machine as it stands.
@@ -336,6 +414,12 @@ impl Engine {
                 gauges: plant.gauges(),
             }),
             ended: self.ended.clone(),
+            tape: self.bench.tape().map(|(tape, at)| TapeStatus {
+                name: tape.name().to_owned(),
+                at,
+                scans: tape.scans(),
+            }),
+            pair: self.pair_status(),
         };
         let frame =
             Frame { number: self.number, machine: state.machine.fork(), flow: self.bench.flow().clone(), status };

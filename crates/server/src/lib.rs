@@ -8,8 +8,9 @@
 pub mod engine;
 pub mod faults;
 pub mod plant;
+pub mod prover;
 pub mod view;
 mod web;
 pub mod workbench;
 
-pub use web::{Access, Limits, serve};
+pub use web::{Access, Limits, PairView, serve, serve_pair};

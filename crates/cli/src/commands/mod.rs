@@ -20,6 +20,7 @@ mod report;
 mod run;
 mod search;
 mod serve;
+mod serve_pair;
 mod show;
 mod test;
 mod timers;

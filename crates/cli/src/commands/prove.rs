@@ -69,7 +69,7 @@ pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
         }
         AnyProject::Domore(document) => {
             let Some(map) = map else {
-                return Err(Error::Use("--map is needed: the address map `rungs migrate` wrote".to_owned()));
+                return Err(needs_map());
             };
             prove_domore(&original.main, &document.project, &map, fates(&document.project).as_deref(), &options)
         }
@@ -91,6 +91,11 @@ pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
     Ok(outcome(&report))
 }
 
+/// A Do-more program has nothing at the addresses of the original.
+pub fn needs_map() -> Error {
+    Error::Use("--map is needed: the address map `rungs migrate` wrote".to_owned())
+}
+
 /// How a proof counts: anything but "no difference found" is a finding.
 pub fn outcome(report: &Report) -> Outcome {
     match report.verdict() {
@@ -100,7 +105,7 @@ pub fn outcome(report: &Report) -> Outcome {
 }
 
 /// A program that was read whole: a proof of half a program would prove nothing.
-fn open(path: &Path) -> Result<AnyProject, String> {
+pub fn open(path: &Path) -> Result<AnyProject, String> {
     let named = |why: String| format!("{}: {why}", path.display());
     let bytes = read_file(path, MOST_BYTES).map_err(named)?;
     let project =
@@ -122,7 +127,7 @@ fn open(path: &Path) -> Result<AnyProject, String> {
 }
 
 /// A row that places nothing would leave its data uncompared without a word.
-fn refuse(
+pub fn refuse(
     original: &ladder::Image,
     other: &AnyProject,
     map: &[Mapping],
@@ -146,7 +151,7 @@ fn refuse(
 }
 
 /// The rows that place data, each with its number in the file, from 1.
-fn mappings(path: &Path) -> Result<Vec<(usize, Mapping)>, String> {
+pub fn mappings(path: &Path) -> Result<Vec<(usize, Mapping)>, String> {
     let named = |why: String| format!("{}: {why}", path.display());
     let bytes = read_file(path, MOST_MAP).map_err(named)?;
     let text = String::from_utf8(bytes).map_err(|_| named("not UTF-8 text".to_owned()))?;

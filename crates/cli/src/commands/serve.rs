@@ -1,71 +1,110 @@
 //! `rungs serve`: the workbench in the browser.
 
 use std::net::SocketAddr;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 use ladder::Project;
 use server::plant::Plant;
 use server::view::{DoMoreProgram, SlcProgram};
-use server::workbench::{Change, DoMore, Slc, Subject, Workbench};
-use server::{Access, engine};
+use server::workbench::{Change, DoMore, Slc, Subject, Tape, Workbench};
+use server::{Access, PairView, engine};
 use sim::{Approximation, Machine, Options, Program, Unsupported};
 use tokio::net::TcpListener;
 
-use super::open;
 use super::run::do_more_text;
 use super::test::reasons;
+use super::{file_name, open, read_file, serve_pair};
 use crate::args::ServeArguments;
 use crate::do_more;
 use crate::output::{Error, Outcome};
 
 pub fn run(arguments: &ServeArguments) -> Result<Outcome, Error> {
+    if let Some(other) = &arguments.other {
+        return match serve_pair::load(arguments, other)? {
+            Ok((bench, view, pair)) => start(arguments, bench, view, Some(pair)),
+            Err(outcome) => Ok(outcome),
+        };
+    }
     let name = arguments.program.display();
-    let file = arguments.program.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let file = file_name(&arguments.program);
     let loaded = match do_more_text(&arguments.program) {
         Some(text) => do_more(arguments, file, &text),
         None => match open(&arguments.program, rss::Mode::Permissive) {
-            Ok(project) => slc(arguments, file, project),
+            Ok(project) => {
+                let slc = slc(arguments, arguments.simulation.choices(), file, project);
+                slc.map(|(machine, view)| (Box::new(machine) as Box<dyn Subject>, view))
+            }
             Err(why) => {
                 eprintln!("{name}: {why}");
                 return Ok(Outcome::Unreadable);
             }
         },
     };
-    let (machine, view) = match loaded {
-        Ok(loaded) => loaded,
-        Err(why) => {
-            why.iter().for_each(|line| eprintln!("{name}: {line}"));
-            eprintln!("{name}: not run");
-            return Ok(Outcome::Finding);
-        }
-    };
-    let mut bench = Workbench::new(machine);
-    if let Some(path) = &arguments.plant {
+    match loaded {
+        Ok((machine, view)) => start(arguments, Workbench::new(machine), view, None),
+        Err(why) => Ok(not_run(&arguments.program, &why)),
+    }
+}
+
+/// Tells what keeps a program from running.
+pub fn not_run(path: &Path, why: &[String]) -> Outcome {
+    let name = path.display();
+    why.iter().for_each(|line| eprintln!("{name}: {line}"));
+    eprintln!("{name}: not run");
+    Outcome::Finding
+}
+
+/// Wires the plant, loads the tape, serves.
+fn start(
+    arguments: &ServeArguments,
+    mut bench: Workbench,
+    view: View,
+    pair: Option<PairView>,
+) -> Result<Outcome, Error> {
+    let text = |path: &Path| {
         let located = |why: &dyn std::fmt::Display| Error::Use(format!("{}: {why}", path.display()));
-        let text = std::fs::read_to_string(path).map_err(|why| located(&why))?;
-        let plant = Plant::parse(&text).map_err(|why| located(&why))?;
-        bench.change(Change::Plant(Some(Box::new(plant)))).map_err(|why| located(&why))?;
+        let bytes = read_file(path, MOST_TEXT).map_err(|why| located(&why))?;
+        String::from_utf8(bytes).map_err(|_| located(&"not UTF-8 text"))
+    };
+    if let Some(path) = &arguments.plant {
+        let located = |why: String| Error::Use(format!("{}: {why}", path.display()));
+        let plant = Plant::parse(&text(path)?).map_err(located)?;
+        bench.change(Change::Plant(Some(Box::new(plant)))).map_err(located)?;
+    }
+    if let Some(path) = &arguments.replay {
+        let located = |why: String| Error::Use(format!("{}: {why}", path.display()));
+        let tape = Tape::read(&text(path)?, bench.initial()).map_err(located)?;
+        bench.play(tape).map_err(located)?;
     }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_io().enable_time().build();
-    runtime.and_then(|runtime| runtime.block_on(serve(arguments, bench, view))).map_err(Error::Write)?;
+    let served = runtime.and_then(|runtime| runtime.block_on(serve(arguments, bench, view, pair)));
+    served.map_err(Error::Write)?;
     Ok(Outcome::Done)
 }
 
-/// The machine and what pages show of its program, or a line for everything that keeps it from running.
-type Loaded = Result<(Box<dyn Subject>, Arc<dyn server::view::Program>), Vec<String>>;
+/// What pages show of a program.
+pub type View = Arc<dyn server::view::Program>;
 
-fn slc(arguments: &ServeArguments, file: String, project: Project) -> Loaded {
+/// The machine and what pages show of its program, or a line for everything that keeps it from running.
+pub type Loaded<M> = Result<(M, View), Vec<String>>;
+
+/// Most bytes of a plant or a scenario.
+const MOST_TEXT: usize = 16 << 20;
+
+/// The machine of an SLC 500 or MicroLogix project.
+pub fn slc(arguments: &ServeArguments, choices: sim::Choices, file: String, project: Project) -> Loaded<Slc> {
     let unsupported = if arguments.accept_unsupported { Unsupported::Fault } else { Unsupported::Refuse };
-    let options = Options { choices: arguments.simulation.choices(), unsupported, ..Options::default() };
+    let options = Options { choices, unsupported, ..Options::default() };
     let program = Program::compile(&project.main, &options);
     let program = program.map_err(|refusals| refusals.iter().map(ToString::to_string).collect::<Vec<_>>())?;
     let notes = notes(program.approximations());
     let machine = Slc::new(Machine::new(program), &project.main);
-    Ok((Box::new(machine), Arc::new(SlcProgram::new(file, project, notes))))
+    Ok((machine, Arc::new(SlcProgram::new(file, project, notes))))
 }
 
-fn do_more(arguments: &ServeArguments, file: String, text: &str) -> Loaded {
+fn do_more(arguments: &ServeArguments, file: String, text: &str) -> Loaded<Box<dyn Subject>> {
     let unsupported = match arguments.accept_unsupported {
         true => domore::engine::Unsupported::Stop,
         false => domore::engine::Unsupported::Refuse,
@@ -73,9 +112,20 @@ fn do_more(arguments: &ServeArguments, file: String, text: &str) -> Loaded {
     let options =
         domore::engine::Options { choices: arguments.simulation.do_more(), unsupported, ..Default::default() };
     let (project, program, approximations) = do_more::program_of(text, &options)?;
+    let (machine, view) = of_do_more(file, project, program, &approximations)?;
+    Ok((Box::new(machine), view))
+}
+
+/// The machine of a Do-more program.
+pub fn of_do_more(
+    file: String,
+    project: domore::Project,
+    program: domore::engine::Program,
+    approximations: &[Approximation],
+) -> Loaded<DoMore> {
     let machine = DoMore::new(program, &project);
-    let view = DoMoreProgram::new(file, project, notes(&approximations)).map_err(|why| vec![why])?;
-    Ok((Box::new(machine), Arc::new(view)))
+    let view = DoMoreProgram::new(file, project, notes(approximations)).map_err(|why| vec![why])?;
+    Ok((machine, Arc::new(view)))
 }
 
 fn notes(approximations: &[Approximation]) -> Vec<String> {
@@ -85,7 +135,8 @@ fn notes(approximations: &[Approximation]) -> Vec<String> {
 async fn serve(
     arguments: &ServeArguments,
     bench: Workbench,
-    view: Arc<dyn server::view::Program>,
+    view: View,
+    pair: Option<PairView>,
 ) -> std::io::Result<()> {
     let listener = TcpListener::bind(SocketAddr::new(arguments.address, arguments.port)).await?;
     let bound = listener.local_addr()?;
@@ -98,8 +149,9 @@ async fn serve(
         None => format!("http://{bound}/"),
     };
     println!("{page}");
+    let other = arguments.other.as_ref().map(|other| format!(" beside {}", other.display())).unwrap_or_default();
     eprintln!(
-        "Serving {}; Ctrl-C ends it. What is not recorded or exported is gone then.",
+        "Serving {}{other}; Ctrl-C ends it. What is not recorded or exported is gone then.",
         arguments.program.display()
     );
     if arguments.open {
@@ -112,7 +164,11 @@ async fn serve(
             std::future::pending::<()>().await;
         }
     };
-    server::serve(listener, engine::start(bench)?, view, access, ended).await
+    let engine = engine::start(bench)?;
+    match pair {
+        Some(pair) => server::serve_pair(listener, engine, view, pair, access, ended).await,
+        None => server::serve(listener, engine, view, access, ended).await,
+    }
 }
 
 /// 128 random bits as text.

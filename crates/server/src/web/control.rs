@@ -10,10 +10,11 @@ use sim::scenario::Literal;
 
 use super::Served;
 use super::asked::{Address, List, Name, Object, SAFE, Whole};
+use super::pair::Side;
 use super::problem::Problem;
 use crate::engine::{Engine, MOST_SCANS, Pace};
 use crate::plant::Plant;
-use crate::workbench::{Change, Condition, ModeChange, Recorded, Relation, trend};
+use crate::workbench::{Change, Condition, ModeChange, Recorded, Relation, Tape, trend};
 
 type Asked<T> = Result<Json<Object<T>>, JsonRejection>;
 type Answer<T> = Result<Json<T>, Problem>;
@@ -21,8 +22,8 @@ type Answer<T> = Result<Json<T>, Problem>;
 /// Longest text of a value, characters.
 const TEXT: usize = 200;
 
-/// Longest text of a plant file, characters.
-const PLANT: usize = 200_000;
+/// Longest text of a plant file or a scenario, characters.
+const FILE: usize = 200_000;
 
 /// Scans one request may run: some seconds.
 const SCANS: u64 = 10_000;
@@ -60,6 +61,10 @@ pub(super) enum Control {
     ClearForces {},
     /// Wires the controller to a plant, given as the text of a plant file, or to none.
     Plant { text: Option<String> },
+    /// Begins again with a scenario as a tape: every scan is its next one. `null`: goes on by hand from where it is.
+    Tape { text: Option<String> },
+    /// Of two programs side by side: whether a run stops at the first difference.
+    StopAtDifference { on: bool },
 }
 
 /// Positions of the key switch.
@@ -112,8 +117,10 @@ fn fits(control: &Control) -> Result<(), String> {
         Control::ScanTime { ms } if !(0.1..=10_000.0).contains(ms) => {
             Err(format!("expected from 0.1 to 10000 milliseconds from one scan to the next, found {ms}"))
         }
-        Control::Plant { text: Some(text) } if text.chars().nth(PLANT).is_some() => {
-            Err(format!("expected a plant file of at most {PLANT} characters, found {}", text.chars().count()))
+        Control::Plant { text: Some(text) } | Control::Tape { text: Some(text) }
+            if text.chars().nth(FILE).is_some() =>
+        {
+            Err(format!("expected a file of at most {FILE} characters, found {}", text.chars().count()))
         }
         _ => Ok(()),
     }
@@ -127,8 +134,14 @@ fn carry_out(engine: &mut Engine, control: Control) -> Result<u64, String> {
         Control::Scan { count } => {
             start(engine, Pace::Paused)?;
             // The last two are watched, so that what changed between them shows.
-            let count = count.get();
-            return Ok((0..count).take_while(|number| engine.bench.scan(number + 2 >= count)).count() as u64);
+            let (count, mut done) = (count.get(), 0);
+            while done < count && engine.bench.scan(done + 2 >= count) {
+                done += 1;
+                if engine.stopping_difference(done + 1 >= count).is_some() {
+                    break;
+                }
+            }
+            return Ok(done);
         }
         Control::Until { address, relation, value, scans } => {
             start(engine, Pace::Paused)?;
@@ -176,13 +189,21 @@ fn carry_out(engine: &mut Engine, control: Control) -> Result<u64, String> {
             let plant = text.map(|text| Plant::parse(&text)).transpose()?.map(Box::new);
             engine.bench.change(Change::Plant(plant))?;
         }
+        Control::Tape { text: Some(text) } => {
+            let tape = Tape::read(&text, engine.bench.initial())?;
+            engine.set_pace(Pace::Paused);
+            engine.bench.play(tape)?;
+        }
+        Control::Tape { text: None } => engine.bench.leave_tape(),
+        Control::StopAtDifference { on } => engine.stops_at_difference = on,
     }
     Ok(0)
 }
 
 /// Sets a pace; a controller in program mode goes to run first, as a person expects who presses run.
 fn start(engine: &mut Engine, pace: Pace) -> Result<(), String> {
-    if engine.bench.state().machine.mode() == "program" {
+    // A tape says itself when run is entered.
+    if engine.bench.tape().is_none() && engine.bench.state().machine.mode() == "program" {
         engine.bench.change(Change::Mode(ModeChange::Run))?;
     }
     engine.set_pace(pace);
@@ -220,8 +241,9 @@ enum Given {
     Text(String),
 }
 
-pub(super) async fn write(State(served): State<Served>, asked: Asked<Write>) -> Answer<Done> {
+pub(super) async fn write(Side(served): Side, asked: Asked<Write>) -> Answer<Done> {
     let Json(Object(Write { address, value })) = asked?;
+    let address = served.spelled(address.as_str());
     let literal = match value {
         Given::Bit(on) => Literal::Integer(on.into()),
         Given::Integer(number) => Literal::Integer(number),
@@ -231,7 +253,7 @@ pub(super) async fn write(State(served): State<Served>, asked: Asked<Write>) -> 
         }
         Given::Text(text) => Literal::Text(text),
     };
-    let done = served.engine.ask(move |engine| engine.bench.write(address.as_str(), &literal)).await?;
+    let done = served.engine.ask(move |engine| engine.bench.write(&address, &literal)).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
 }
 
@@ -243,9 +265,9 @@ pub(super) struct Force {
     state: Option<bool>,
 }
 
-pub(super) async fn force(State(served): State<Served>, asked: Asked<Force>) -> Answer<Done> {
+pub(super) async fn force(Side(served): Side, asked: Asked<Force>) -> Answer<Done> {
     let Json(Object(Force { address, state })) = asked?;
-    let change = Change::Force { address: address.into_string(), state };
+    let change = Change::Force { address: served.spelled(address.as_str()), state };
     let done = served.engine.ask(move |engine| engine.bench.change(change)).await?;
     done.map(|()| Json(Done::default())).map_err(Problem::refused)
 }

@@ -21,6 +21,7 @@ use super::asked::{List, Object};
 use super::problem::Problem;
 use super::{Served, Status, json_value};
 use crate::engine::Frame;
+use crate::workbench::Flow;
 
 /// Rungs and values of one browser.
 const RUNGS: usize = 500;
@@ -46,6 +47,12 @@ struct See {
     /// Addresses.
     #[serde(default)]
     values: List<String, VALUES>,
+    /// Rungs of the other program, where there are two.
+    #[serde(default)]
+    other_rungs: List<(u16, u16), RUNGS>,
+    /// Rows of what both have, by number.
+    #[serde(default)]
+    rows: List<u32, VALUES>,
 }
 
 /// What a browser is told.
@@ -60,6 +67,12 @@ struct Told<'a> {
     /// By address; `null` where there is no such value.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     values: BTreeMap<&'a str, serde_json::Value>,
+    /// As `rungs`, of the other program.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    other_rungs: BTreeMap<String, String>,
+    /// By number, the values of a row on both sides.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    rows: BTreeMap<u32, [serde_json::Value; 2]>,
 }
 
 /// What was told last.
@@ -67,6 +80,8 @@ struct Told<'a> {
 struct Known {
     rungs: BTreeMap<(u16, u16), Vec<u8>>,
     values: BTreeMap<String, serde_json::Value>,
+    other_rungs: BTreeMap<(u16, u16), Vec<u8>>,
+    rows: BTreeMap<u32, [serde_json::Value; 2]>,
 }
 
 pub(super) async fn live(
@@ -154,13 +169,23 @@ async fn part(socket: &mut WebSocket, mut why: String) -> Result<(), axum::Error
 
 fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String {
     let status = Status::of(&frame.status, served);
-    let mut told = Told { frame: frame.number, status: &status, rungs: BTreeMap::new(), values: BTreeMap::new() };
-    for rung in see.rungs.as_slice() {
-        let bits = frame.flow.rung(rung.0, rung.1);
-        if known.rungs.get(rung).is_none_or(|last| last != bits) {
-            let digits = bits.iter().filter_map(|bits| char::from_digit(u32::from(bits & 15), 16)).collect();
-            told.rungs.insert(format!("{}:{}", rung.0, rung.1), digits);
-            known.rungs.insert(*rung, bits.to_vec());
+    let mut told = Told {
+        frame: frame.number,
+        status: &status,
+        rungs: flow(&frame.flow, see.rungs.as_slice(), &mut known.rungs),
+        values: BTreeMap::new(),
+        other_rungs: BTreeMap::new(),
+        rows: BTreeMap::new(),
+    };
+    if let Some(pair) = frame.machine.pair() {
+        told.other_rungs = flow(pair.other_flow(), see.other_rungs.as_slice(), &mut known.other_rungs);
+        for row in see.rows.as_slice() {
+            let Some(values) = pair.values(*row as usize) else { continue };
+            let values = values.map(|value| json_value(&value));
+            if known.rows.get(row) != Some(&values) {
+                known.rows.insert(*row, values.clone());
+                told.rows.insert(*row, values);
+            }
         }
     }
     for address in see.values.as_slice() {
@@ -173,4 +198,18 @@ fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String 
     }
     // Keys are texts and values plain: there is nothing that JSON cannot say.
     serde_json::to_string(&told).unwrap_or_default()
+}
+
+/// Power flow of rungs that is not what was told last.
+fn flow(flow: &Flow, rungs: &[(u16, u16)], known: &mut BTreeMap<(u16, u16), Vec<u8>>) -> BTreeMap<String, String> {
+    let mut told = BTreeMap::new();
+    for rung in rungs {
+        let bits = flow.rung(rung.0, rung.1);
+        if known.get(rung).is_none_or(|last| last != bits) {
+            let digits = bits.iter().filter_map(|bits| char::from_digit(u32::from(bits & 15), 16)).collect();
+            told.insert(format!("{}:{}", rung.0, rung.1), digits);
+            known.insert(*rung, bits.to_vec());
+        }
+    }
+    told
 }

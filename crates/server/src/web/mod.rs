@@ -7,6 +7,7 @@ mod describe;
 mod guard;
 mod live;
 mod pages;
+mod pair;
 mod problem;
 mod read;
 
@@ -27,6 +28,7 @@ use crate::engine::{self, Handle, Pace};
 use crate::view::Program;
 pub use connections::Limits;
 use guard::Guard;
+pub use pair::PairView;
 
 /// Longest body of a request: a plant file.
 const BODY: usize = 256 << 10;
@@ -44,6 +46,17 @@ pub(crate) struct Served {
     silent: Duration,
     /// Tells this run of the server from others, so that a page sees that it was started again.
     server: Arc<str>,
+    /// What pages show of two programs side by side.
+    pair: Option<Arc<PairView>>,
+    /// What stands before addresses of `program` where the engine is asked.
+    prefix: &'static str,
+}
+
+impl Served {
+    /// An address of the program served, as the engine takes it.
+    fn spelled(&self, address: &str) -> String {
+        format!("{}{address}", self.prefix)
+    }
 }
 
 /// How a program is served.
@@ -68,6 +81,31 @@ pub async fn serve(
     access: Access,
     ended: impl Future<Output = ()> + Send + 'static,
 ) -> std::io::Result<()> {
+    serve_either(listener, engine, (program, None), access, ended).await
+}
+
+/// Serves two programs side by side until `ended` is done; `engine` runs a [`crate::workbench::Pair`] of them.
+///
+/// # Errors
+/// As [`serve`].
+pub async fn serve_pair(
+    listener: TcpListener,
+    engine: Handle,
+    program: Arc<dyn Program>,
+    pair: PairView,
+    access: Access,
+    ended: impl Future<Output = ()> + Send + 'static,
+) -> std::io::Result<()> {
+    serve_either(listener, engine, (program, Some(Arc::new(pair))), access, ended).await
+}
+
+async fn serve_either(
+    listener: TcpListener,
+    engine: Handle,
+    (program, pair): (Arc<dyn Program>, Option<Arc<PairView>>),
+    access: Access,
+    ended: impl Future<Output = ()> + Send + 'static,
+) -> std::io::Result<()> {
     let bound = listener.local_addr()?;
     if !bound.ip().is_loopback() && access.token.is_none() {
         return Err(std::io::Error::other("a server that others can reach needs a token"));
@@ -80,36 +118,60 @@ pub async fn serve(
         token: access.token.is_some(),
         silent: access.limits.silent,
         server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
+        pair,
+        prefix: "",
     };
     let guard = Arc::new(Guard::new(bound, access.token, access.limits.body));
     connections::serve(listener, router(served, guard), access.limits, ended).await;
     Ok(())
 }
 
-/// Every route with what answers it; the same paths stand in `openapi.json`.
-fn routes() -> Vec<(&'static str, MethodRouter<Served>)> {
-    vec![
+/// Paths behind `/api/` and [`pair::OTHER_PATHS`]: what is asked of one program.
+const ASKED_OF_A_PROGRAM: [&str; 8] = [
+    "project",
+    "routines/{routine}/rungs",
+    "routines/{routine}/heights",
+    "data/{file}",
+    "uses",
+    "search",
+    "write",
+    "force",
+];
+
+/// Every route with what answers it; the same paths stand in the description.
+fn routes() -> Vec<(String, MethodRouter<Served>)> {
+    let fixed: [(&str, MethodRouter<Served>); 11] = [
         ("/", get(pages::index)),
         ("/assets/{name}", get(pages::asset)),
         ("/api/openapi.json", get(pages::openapi)),
-        ("/api/project", get(read::project)),
         ("/api/state", get(read::state)),
-        ("/api/routines/{routine}/rungs", get(read::rungs)),
-        ("/api/routines/{routine}/heights", get(read::heights)),
-        ("/api/data/{file}", get(read::data)),
-        ("/api/uses", get(read::uses)),
-        ("/api/search", get(read::search)),
         ("/api/trend", get(read::trend).post(control::follow)),
         ("/api/control", post(control::control)),
-        ("/api/write", post(control::write)),
-        ("/api/force", post(control::force)),
         ("/api/record", post(control::record)),
         ("/api/live", get(live::live)),
-    ]
+        (pair::PATHS[0], get(pair::overview)),
+        (pair::PATHS[1], get(pair::rows)),
+        (pair::PATHS[2], get(pair::proof).post(pair::prove)),
+    ];
+    let of_a_program: [MethodRouter<Served>; 8] = [
+        get(read::project),
+        get(read::rungs),
+        get(read::heights),
+        get(read::data),
+        get(read::uses),
+        get(read::search),
+        post(control::write),
+        post(control::force),
+    ];
+    let all = fixed.into_iter().map(|(path, answer)| (path.to_owned(), answer));
+    let sides = ASKED_OF_A_PROGRAM.into_iter().zip(of_a_program).flat_map(|(path, answer)| {
+        [(format!("/api/{path}"), answer.clone()), (format!("{}{path}", pair::OTHER_PATHS), answer)]
+    });
+    all.chain(sides).collect()
 }
 
 fn router(served: Served, guard: Arc<Guard>) -> Router {
-    let mut all = routes().into_iter().fold(Router::new(), |all, (path, answer)| all.route(path, answer));
+    let mut all = routes().into_iter().fold(Router::new(), |all, (path, answer)| all.route(&path, answer));
     if served.read_only {
         all = all.route_layer(middleware::from_fn(guard::only_look));
     }
@@ -154,6 +216,11 @@ pub(crate) struct Status {
     ended: Option<String>,
     plant: Option<PlantStatus>,
     read_only: bool,
+    /// The tape that is played.
+    tape: Option<pair::TapeStatus>,
+    /// Two machines side by side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pair: Option<pair::PairStatus>,
 }
 
 /// A plant in figures.
@@ -200,6 +267,8 @@ impl Status {
                 gauges: gauges(&plant.gauges),
             }),
             read_only: served.read_only,
+            tape: status.tape.as_ref().map(pair::TapeStatus::of),
+            pair: status.pair.as_ref().map(pair::PairStatus::of),
         }
     }
 }

@@ -53,7 +53,8 @@ pub(super) async fn asset(name: Result<Path<String>, PathRejection>) -> Result<R
 
 /// What the API offers, in the form tools read.
 pub(super) async fn openapi(State(served): State<Served>) -> Json<Value> {
-    Json(description(served.token, served.program.outline()))
+    let other = served.pair.as_ref().map(|pair| pair.outline());
+    Json(description(served.token, served.program.outline(), other))
 }
 
 pub(super) async fn missing(uri: Uri) -> Problem {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
 use super::asked::{Address, SAFE, Text, Whole};
+use super::pair::Side;
 use super::problem::Problem;
 use super::{Served, Status};
 use crate::view::{DataView, HitsView, Outline, RungView, UsesView};
@@ -26,7 +27,7 @@ const TEXT: usize = 500;
 type Columns = Whole<{ render::MIN_WIDTH as u64 }, { render::MAX_WIDTH as u64 }>;
 const COLUMNS: usize = 100;
 
-pub(super) async fn project(State(served): State<Served>) -> Json<Outline> {
+pub(super) async fn project(Side(served): Side) -> Json<Outline> {
     Json(served.program.outline().clone())
 }
 
@@ -46,11 +47,7 @@ pub(super) struct Rungs {
     width: Option<Columns>,
 }
 
-pub(super) async fn rungs(
-    State(served): State<Served>,
-    routine: Named<u16>,
-    asked: Asked<Rungs>,
-) -> Answer<Vec<RungView>> {
+pub(super) async fn rungs(Side(served): Side, routine: Named<u16>, asked: Asked<Rungs>) -> Answer<Vec<RungView>> {
     let (Path(routine), Query(Rungs { from, count, width })) = (routine?, asked?);
     let outline = served.program.outline();
     let Some(found) = outline.routines.iter().find(|it| it.number == routine) else {
@@ -71,11 +68,7 @@ pub(super) struct Width {
     width: Option<Columns>,
 }
 
-pub(super) async fn heights(
-    State(served): State<Served>,
-    routine: Named<u16>,
-    asked: Asked<Width>,
-) -> Answer<Vec<usize>> {
+pub(super) async fn heights(Side(served): Side, routine: Named<u16>, asked: Asked<Width>) -> Answer<Vec<usize>> {
     let (Path(routine), Query(Width { width })) = (routine?, asked?);
     if !served.program.outline().routines.iter().any(|it| it.number == routine) {
         return Err(no_routine(routine));
@@ -101,11 +94,7 @@ pub(super) struct Elements {
     count: Option<Whole<0, ELEMENTS>>,
 }
 
-pub(super) async fn data(
-    State(served): State<Served>,
-    file: Named<String>,
-    asked: Asked<Elements>,
-) -> Answer<DataView> {
+pub(super) async fn data(Side(served): Side, file: Named<String>, asked: Asked<Elements>) -> Answer<DataView> {
     let (Path(file), Query(Elements { from, count })) = (file?, asked?);
     let view = served.program.data(&file, from.map_or(0, Whole::size), count.map_or(200, Whole::size));
     view.map(Json).ok_or_else(|| Problem::missing(format!("there is no data file {file}")))
@@ -118,7 +107,7 @@ pub(super) struct Of {
     address: Address,
 }
 
-pub(super) async fn uses(State(served): State<Served>, asked: Asked<Of>) -> Answer<UsesView> {
+pub(super) async fn uses(Side(served): Side, asked: Asked<Of>) -> Answer<UsesView> {
     let Query(Of { address }) = asked?;
     let found = spawn_blocking(move || served.program.uses(address.as_str())).await.map_err(broken)?;
     found.map(Json).map_err(Problem::missing)
@@ -131,7 +120,7 @@ pub(super) struct For {
     q: Text<TEXT>,
 }
 
-pub(super) async fn search(State(served): State<Served>, asked: Asked<For>) -> Answer<HitsView> {
+pub(super) async fn search(Side(served): Side, asked: Asked<For>) -> Answer<HitsView> {
     let Query(For { q }) = asked?;
     if q.as_str().trim().is_empty() {
         return Ok(Json(HitsView::default()));

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 use std::time::Duration;
 
+use analysis::proof::{self, AnySide, AnySideMut, Side};
 use domore::engine::{Fault, Handle, Machine, Mode, Program, Watch};
 use ladder::Value;
 use render::scene::{Node, Scene};
@@ -24,8 +25,7 @@ struct Wires {
 /// A Do-more machine. The engine tells what every contact says and every output gets; power in between follows from
 /// the drawing.
 pub struct DoMore {
-    machine: Machine,
-    program: Program,
+    side: proof::DoMore,
     routines: Arc<Vec<Vec<Wires>>>,
     /// Names of input and output bits by their places.
     points: Arc<HashMap<Handle, String>>,
@@ -51,8 +51,7 @@ impl DoMore {
         let machine = Machine::new(program.clone());
         DoMore {
             points: Arc::new(points(&machine, project)),
-            machine,
-            program,
+            side: proof::DoMore::new(program),
             routines: Arc::new(project.code_blocks().map(rungs).collect()),
             forces: BTreeMap::new(),
             enabled: false,
@@ -66,14 +65,14 @@ impl DoMore {
         for (address, (handle, on)) in &self.forces {
             if wanted(address) {
                 // It is a bit that can be written: that was tried when the force was installed.
-                let _ = self.machine.put_shown(*handle, &Value::Bit(*on));
+                let _ = self.side.machine.put_shown(*handle, &Value::Bit(*on));
             }
         }
     }
 
     fn scan_with(&mut self, scan: impl FnOnce(&mut Machine)) {
         self.force_all(is_input);
-        scan(&mut self.machine);
+        scan(&mut self.side.machine);
         self.force_all(|address| !is_input(address));
     }
 }
@@ -111,18 +110,25 @@ impl Watch for Seen<'_> {
 }
 
 impl Subject for DoMore {
+    fn side(&self) -> Option<AnySide<'_>> {
+        Some(AnySide::DoMore(&self.side))
+    }
+
+    fn side_mut(&mut self) -> Option<AnySideMut<'_>> {
+        Some(AnySideMut::DoMore(&mut self.side))
+    }
+
     fn controller(&self) -> &dyn Controller {
-        &self.machine
+        &self.side.machine
     }
 
     fn controller_mut(&mut self) -> &mut dyn Controller {
-        &mut self.machine
+        &mut self.side.machine
     }
 
     fn fork(&self) -> Box<dyn Subject> {
         Box::new(DoMore {
-            machine: self.machine.fork(),
-            program: self.program.clone(),
+            side: Side::fork(&self.side),
             routines: Arc::clone(&self.routines),
             points: Arc::clone(&self.points),
             forces: self.forces.clone(),
@@ -143,7 +149,7 @@ impl Subject for DoMore {
 
     fn scan_watched(&mut self, dt: Duration, flow: &mut Flow) {
         let mut said = self.flow();
-        let program = self.program.clone();
+        let program = self.side.program().clone();
         self.scan_with(|machine| {
             machine.scan_watched(dt, &mut Seen { program: &program, all: &mut said });
         });
@@ -180,7 +186,7 @@ impl Subject for DoMore {
     }
 
     fn mode(&self) -> &'static str {
-        match (self.machine.fault(), self.machine.mode()) {
+        match (self.side.machine.fault(), self.side.machine.mode()) {
             (Some(_), _) => "fault",
             (None, Mode::Run) => "run",
             (None, Mode::Program) => "program",
@@ -192,23 +198,23 @@ impl Subject for DoMore {
     }
 
     fn power_cycle(&mut self) {
-        self.machine.power_cycle();
+        self.side.machine.power_cycle();
     }
 
     fn fault_site(&self) -> Option<(u16, u16)> {
-        let Some(Fault::Unsupported { operation }) = self.machine.fault() else { return None };
-        let (block, rung, _) = self.program.spot(operation)?;
+        let Some(Fault::Unsupported { operation }) = self.side.machine.fault() else { return None };
+        let (block, rung, _) = self.side.program().spot(operation)?;
         Some((u16::try_from(block).ok()?, u16::try_from(rung).ok()?))
     }
 
     fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {
-        let handle = self.machine.handle(address).map_err(|error| error.why)?;
+        let handle = self.side.machine.handle(address).map_err(|error| error.why)?;
         let Some(name) = self.points.get(&handle).cloned() else {
             return Err(format!("{address} is no input or output bit: only those can be forced"));
         };
         match state {
             Some(on) => {
-                self.machine.put_shown(handle, &self.machine.shown(handle))?;
+                self.side.machine.put_shown(handle, &self.side.machine.shown(handle))?;
                 self.forces.insert(name.clone(), (handle, on));
             }
             None => {
@@ -229,11 +235,11 @@ impl Subject for DoMore {
 
     fn terminal(&self, address: &str) -> Option<Value> {
         let output = address.starts_with(['Y', 'y']) || address.starts_with("WY") || address.starts_with("wy");
-        match (output, self.machine.mode()) {
+        match (output, self.side.machine.mode()) {
             (false, _) => None,
-            (true, Mode::Run) => self.machine.read(address).ok(),
+            (true, Mode::Run) => self.side.machine.read(address).ok(),
             // Outputs of a stopped controller are off.
-            (true, Mode::Program) => match self.machine.read(address).ok()? {
+            (true, Mode::Program) => match self.side.machine.read(address).ok()? {
                 Value::Bit(_) => Some(Value::Bit(false)),
                 Value::Word(_) => Some(Value::Word(0)),
                 other => Some(other),

@@ -75,7 +75,8 @@ impl History {
         self.moments.len() as u64
     }
 
-    fn end(&self) -> u64 {
+    /// Scans since it began, those that were gone back left out.
+    pub fn end(&self) -> u64 {
         self.forgotten + self.depth()
     }
 

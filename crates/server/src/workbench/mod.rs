@@ -7,9 +7,11 @@ mod change;
 mod do_more;
 pub mod flow;
 mod history;
+pub mod pair;
 mod record;
 mod state;
 mod subject;
+mod tape;
 pub mod trend;
 
 use std::time::Duration;
@@ -21,9 +23,11 @@ pub use change::{Change, ModeChange};
 pub use do_more::DoMore;
 pub use flow::Flow;
 pub use history::History;
+pub use pair::Pair;
 pub use record::{Recorder, Subject as Recorded};
 pub use state::State;
 pub use subject::{Slc, Subject};
+pub use tape::Tape;
 use trend::Trace;
 
 /// Snapshots a person can keep.
@@ -46,6 +50,8 @@ pub struct Workbench {
     snapshots: Vec<(String, State)>,
     recorder: Option<Recorder>,
     traces: Vec<Trace>,
+    /// What is played, scan by scan, since the history began.
+    tape: Option<Tape>,
 }
 
 /// A comparison that ends a run.
@@ -105,6 +111,7 @@ impl Workbench {
             snapshots: Vec::new(),
             recorder: None,
             traces: Vec::new(),
+            tape: None,
         }
     }
 
@@ -131,6 +138,7 @@ impl Workbench {
         if scan < SCAN.0 || scan > SCAN.1 {
             return Err(format!("expected a time between scans from {:?} to {:?}, found {scan:?}", SCAN.0, SCAN.1));
         }
+        self.state.machine.takes_scan_time(scan)?;
         self.scan = Duration::from_micros(u64::try_from(scan.as_micros()).unwrap_or(u64::MAX));
         Ok(())
     }
@@ -140,10 +148,25 @@ impl Workbench {
         self.history.depth()
     }
 
-    /// Runs one scan; `watched` notes its power flow. `false`: the machine does not execute, nothing was done.
+    /// Runs one scan; `watched` notes its power flow. `false`: the machine does not execute or the tape has ended,
+    /// nothing was done.
     pub fn scan(&mut self, watched: bool) -> bool {
-        let Some(scanned) = self.state.scan(self.scan, watched.then_some(&mut self.flow)) else { return false };
-        self.history.scanned(self.scan, &self.state);
+        let usual = match &self.tape {
+            None => self.scan,
+            Some(tape) => {
+                let Some(next) = tape.get(self.history.end()) else { return false };
+                // Going back to this scan undid what was done before the one that follows.
+                for change in &next.changes {
+                    // What the tape writes was found when it was read.
+                    if self.state.apply(change).is_ok() {
+                        self.history.changed(change.clone());
+                    }
+                }
+                next.dt
+            }
+        };
+        let Some(scanned) = self.state.scan(usual, watched.then_some(&mut self.flow)) else { return false };
+        self.history.scanned(usual, &self.state);
         if let Some(recorder) = &mut self.recorder {
             for (address, value) in scanned.written {
                 recorder.changed(&Change::Write { address, value });
@@ -164,7 +187,13 @@ impl Workbench {
     ///
     /// # Errors
     /// Why it cannot be made, in words; nothing has changed then.
-    pub fn change(&mut self, change: Change) -> Result<(), String> {
+    pub fn change(&mut self, mut change: Change) -> Result<(), String> {
+        if self.tape.is_some() {
+            return Err("a tape is being played: it must be left before anything is changed by hand".to_owned());
+        }
+        if let Change::Write { address, .. } | Change::Force { address, .. } = &mut change {
+            *address = self.state.machine.changeable(address)?;
+        }
         self.state.apply(&change)?;
         if let Change::Plant(plant) = &change {
             self.wired.clone_from(plant);
@@ -218,7 +247,35 @@ impl Workbench {
         Ok(())
     }
 
+    /// Begins again as [`Workbench::restart`] does, without a plant, and plays a tape from now on: every scan is the
+    /// next one of the tape.
+    ///
+    /// # Errors
+    /// A recording is in progress.
+    pub fn play(&mut self, tape: Tape) -> Result<(), String> {
+        self.not_recording("a tape")?;
+        self.go_on_from(State::new(self.initial.fork()));
+        self.tape = Some(tape);
+        Ok(())
+    }
+
+    /// The tape that is played, and how many of its scans have run.
+    pub fn tape(&self) -> Option<(&Tape, u64)> {
+        self.tape.as_ref().map(|tape| (tape, self.history.end()))
+    }
+
+    /// Goes on by hand from where the tape is.
+    pub fn leave_tape(&mut self) {
+        self.tape = None;
+    }
+
+    /// The machine with the data of the project, in program mode.
+    pub fn initial(&self) -> &dyn Subject {
+        self.initial.as_ref()
+    }
+
     fn go_on_from(&mut self, state: State) {
+        self.tape = None;
         self.state = state;
         self.history = History::new(&self.state);
         self.flow = self.state.machine.flow();

@@ -4,11 +4,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
+use analysis::proof::{self, AnySide, AnySideMut, Side};
 use ladder::{Address, Image, Value};
 use sim::scenario::Controller;
 use sim::{Mode, PowerFlow, Trace};
 
 use super::flow::Flow;
+use super::pair::Pair;
 
 /// A simulated machine that can be copied, watched and forced.
 pub trait Subject: Send + Sync {
@@ -16,6 +18,29 @@ pub trait Subject: Send + Sync {
     fn controller(&self) -> &dyn Controller;
     /// The same, to change it.
     fn controller_mut(&mut self) -> &mut dyn Controller;
+    /// The machine as comparisons look at it; `None` for two machines.
+    fn side(&self) -> Option<AnySide<'_>>;
+    /// The same, to write to it.
+    fn side_mut(&mut self) -> Option<AnySideMut<'_>>;
+    /// Both machines, where these are two side by side.
+    fn pair(&self) -> Option<&Pair> {
+        None
+    }
+    /// The address by which a person's change of this one is made and remembered.
+    ///
+    /// # Errors
+    /// Nobody may change it now, with why.
+    fn changeable(&self, address: &str) -> Result<String, String> {
+        Ok(address.to_owned())
+    }
+    /// Whether scans can follow each other after this time.
+    ///
+    /// # Errors
+    /// They cannot, with why.
+    fn takes_scan_time(&self, time: Duration) -> Result<(), String> {
+        let _ = time;
+        Ok(())
+    }
     /// A second machine in the same state.
     fn fork(&self) -> Box<dyn Subject>;
     /// Room for its power flow.
@@ -53,7 +78,7 @@ pub trait Subject: Send + Sync {
 
 /// An SLC 500 or MicroLogix machine.
 pub struct Slc {
-    machine: sim::Machine,
+    side: proof::Slc,
     /// Instructions of the rungs of each program file.
     shape: Arc<Vec<(u16, Vec<usize>)>>,
     /// Input and output bits by their places: as the program spells them, or else as its data tables do.
@@ -66,7 +91,19 @@ impl Slc {
         let rungs = |file: &ladder::ProgramFile| file.rungs.iter().map(|rung| rung.instructions().count()).collect();
         let shape = image.ladder_files().map(|file| (file.number, rungs(file))).collect();
         let points = Arc::new(points(&machine, image));
-        Slc { machine, shape: Arc::new(shape), points }
+        Slc { side: proof::Slc { machine }, shape: Arc::new(shape), points }
+    }
+}
+
+impl Slc {
+    /// The machine as comparisons look at it.
+    pub fn as_side(&self) -> &proof::Slc {
+        &self.side
+    }
+
+    /// A second machine in the same state.
+    pub(super) fn copy(&self) -> Slc {
+        Slc { side: self.side.fork(), shape: Arc::clone(&self.shape), points: Arc::clone(&self.points) }
     }
 }
 
@@ -95,16 +132,24 @@ fn points(machine: &sim::Machine, image: &Image) -> HashMap<u32, String> {
 }
 
 impl Subject for Slc {
+    fn side(&self) -> Option<AnySide<'_>> {
+        Some(AnySide::Slc(&self.side))
+    }
+
+    fn side_mut(&mut self) -> Option<AnySideMut<'_>> {
+        Some(AnySideMut::Slc(&mut self.side))
+    }
+
     fn controller(&self) -> &dyn Controller {
-        &self.machine
+        &self.side.machine
     }
 
     fn controller_mut(&mut self) -> &mut dyn Controller {
-        &mut self.machine
+        &mut self.side.machine
     }
 
     fn fork(&self) -> Box<dyn Subject> {
-        Box::new(Slc { machine: self.machine.fork(), shape: Arc::clone(&self.shape), points: Arc::clone(&self.points) })
+        Box::new(self.copy())
     }
 
     fn flow(&self) -> Flow {
@@ -112,16 +157,16 @@ impl Subject for Slc {
     }
 
     fn scan(&mut self, dt: Duration) {
-        self.machine.scan(dt);
+        self.side.machine.scan(dt);
     }
 
     fn scan_watched(&mut self, dt: Duration, flow: &mut Flow) {
         flow.begin();
-        self.machine.scan_traced(dt, &mut Watching(flow));
+        self.side.machine.scan_traced(dt, &mut Watching(flow));
     }
 
     fn mode(&self) -> &'static str {
-        match self.machine.mode() {
+        match self.side.machine.mode() {
             Mode::Program => "program",
             Mode::Run => "run",
             Mode::Test => "test",
@@ -131,47 +176,47 @@ impl Subject for Slc {
     }
 
     fn enter_test(&mut self) -> Result<(), String> {
-        self.machine.enter_test();
+        self.side.machine.enter_test();
         Ok(())
     }
 
     /// The data table is kept; a controller that ran runs again, with prescan and first pass.
     fn power_cycle(&mut self) {
-        let mode = self.machine.mode();
-        self.machine.enter_program();
+        let mode = self.side.machine.mode();
+        self.side.machine.enter_program();
         match mode {
-            Mode::Run => self.machine.enter_run(),
-            Mode::Test => self.machine.enter_test(),
+            Mode::Run => self.side.machine.enter_run(),
+            Mode::Test => self.side.machine.enter_test(),
             Mode::Program | Mode::Suspend | Mode::Fault => {}
         }
     }
 
     fn fault_site(&self) -> Option<(u16, u16)> {
-        self.machine.fault().map(|fault| (fault.file, fault.rung))
+        self.side.machine.fault().map(|fault| (fault.file, fault.rung))
     }
 
     fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {
         let parsed = Address::parse(address).map_err(|why| why.to_string())?;
-        let name = self.machine.place(&parsed).ok().and_then(|(place, _)| self.points.get(&place));
-        match self.machine.force(&parsed, state) {
+        let name = self.side.machine.place(&parsed).ok().and_then(|(place, _)| self.points.get(&place));
+        match self.side.machine.force(&parsed, state) {
             true => Ok(name.cloned().unwrap_or_else(|| parsed.to_string())),
             false => Err(format!("{address} is no input or output bit: only those can be forced")),
         }
     }
 
     fn enable_forces(&mut self, on: bool) -> Result<(), String> {
-        self.machine.enable_forces(on);
+        self.side.machine.enable_forces(on);
         Ok(())
     }
 
     /// S:1/5.
     fn forces_enabled(&self) -> bool {
-        let enabled = Address::parse("S:1/5").ok().and_then(|address| self.machine.get(&address).ok());
+        let enabled = Address::parse("S:1/5").ok().and_then(|address| self.side.machine.get(&address).ok());
         enabled == Some(Value::Bit(true))
     }
 
     fn terminal(&self, address: &str) -> Option<Value> {
-        self.machine.output(&Address::parse(address).ok()?)
+        self.side.machine.output(&Address::parse(address).ok()?)
     }
 }
 
