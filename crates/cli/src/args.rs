@@ -671,7 +671,10 @@ pub struct ProveArguments {
     /// Start of the random sequence: the same seed gives the same run
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the report and, if the programs differ, for a scenario of each
+    /// End the run after so many seconds, whatever is left of the scans; the report says how many were made
+    #[arg(long, value_name = "N", value_parser = seconds)]
+    pub seconds: Option<Duration>,
+    /// Folder for the report and, if the programs differ, for a scenario of each; those of an earlier run are replaced
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// JSON on one line
@@ -701,6 +704,9 @@ pub struct DiffArguments {
     /// Write a page with the rungs drawn side by side instead; for two folders a folder of pages with a list
     #[arg(long, value_name = "OUT", conflicts_with_all = ["json", "unified", "two_sided"])]
     pub html: Option<PathBuf>,
+    /// With --html: overwrite pages that exist
+    #[arg(long, requires = "html")]
+    pub force: bool,
     /// Rungs drawn side by side, whatever the width
     #[arg(long)]
     pub two_sided: bool,
@@ -819,6 +825,9 @@ pub struct MigrateArguments {
     /// With --prove: start of the random sequence
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
+    /// With --prove: end the run after so many seconds
+    #[arg(long, value_name = "N", value_parser = seconds)]
+    pub seconds: Option<Duration>,
     /// Replace files that exist in the folder
     #[arg(long, visible_alias = "force")]
     pub overwrite: bool,
@@ -882,6 +891,13 @@ fn choice(name: &str) -> Result<AnyChoice, String> {
         let names: Vec<_> = names.chain(domore::choices::LIST.iter().map(|row| row.name)).collect();
         format!("expected one of {}", names.join(", "))
     })
+}
+
+/// Seconds of a person's time, with a fraction if need be.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let number = text.trim_end_matches('s').parse::<f64>().ok();
+    let time = number.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    time.ok_or_else(|| "expected seconds, such as 60 or 0.5".to_owned())
 }
 
 /// Rung numbers, both ends included.

@@ -255,11 +255,17 @@ fn pages_show_a_difference_and_never_overwrite_what_is_compared() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
     assert_eq!(std::fs::read(folder.join("new.SLC")).expect("the file"), before);
-    // Nor anything else that is no page; a page is made anew.
+    // Nor anything else that is no page; a page is made anew when asked to.
     std::fs::write(folder.join("other.RSS"), "mine").expect("a file");
     assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "other.RSS"]).status.code(), Some(2));
     assert_eq!(std::fs::read(folder.join("other.RSS")).expect("the file"), b"mine");
-    assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "out.html"]).status.code(), Some(1));
+    let again = ["old.SLC", "old.SLC", "--html", "out.html"];
+    assert_eq!(diff(&folder, &again).status.code(), Some(2));
+    assert_eq!(std::fs::read_to_string(folder.join("out.html")).expect("a page"), page);
+    let forced = [again.as_slice(), &["--force"]].concat();
+    assert_eq!(diff(&folder, &forced).status.code(), Some(0));
+    assert_ne!(std::fs::read_to_string(folder.join("out.html")).expect("a page"), page);
+    assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--force"]).status.code(), Some(2));
     assert_eq!(diff(&folder, &["old.SLC", "new.SLC", "--html", "x.html", "--json"]).status.code(), Some(2));
     assert_eq!(diff(&folder, &["old.SLC", "missing.SLC", "--html", "x.html"]).status.code(), Some(3));
     assert!(!folder.join("x.html").exists());
@@ -280,7 +286,10 @@ fn folders_give_a_folder_of_pages() {
     let filling = std::fs::read_to_string(example("filling_domore/filling.txt")).expect("the example");
     std::fs::write(folder.join("a/filling.txt"), &filling).expect("written");
     std::fs::write(folder.join("b/filling.txt"), filling.replace("2500", "2600")).expect("written");
+    let _ = std::fs::remove_dir_all(folder.join("pages"));
     text(&diff(&folder, &["a", "b", "--html", "pages"]), 1);
+    assert_eq!(diff(&folder, &["a", "b", "--html", "pages"]).status.code(), Some(2));
+    text(&diff(&folder, &["a", "b", "--html", "pages", "--force"]), 1);
     let list = std::fs::read_to_string(folder.join("pages/index.html")).expect("a list");
     assert!(list.contains("a/batch &lt;1&gt;.RSS") && list.contains("equal"), "{list}");
     let mut pages = 0;

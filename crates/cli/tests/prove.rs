@@ -62,6 +62,24 @@ fn a_difference_comes_with_scenarios_that_run() {
     let converted = test("converted.toml");
     assert_eq!(converted.status.code(), Some(1), "{}", text(&converted.stdout));
     assert!(text(&converted.stdout).contains("expected"), "{}", text(&converted.stdout));
+    // A run that finds nothing leaves no difference of an earlier one beside its report.
+    let motor = example("motor/motor.SLC");
+    let output = rungs(&["prove", &motor, &motor, "--out", path(&out), "--scans", "500"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
+    assert!(out.join("proof.txt").is_file());
+    assert!(!out.join("original.toml").exists() && !out.join("converted.toml").exists());
+}
+
+#[test]
+fn a_run_ends_in_time_and_says_so() {
+    let motor = example("motor/motor.SLC");
+    let started = std::time::Instant::now();
+    let output = rungs(&["prove", &motor, &motor, "--scans", "4000000000", "--seconds", "0.5"]);
+    assert!(started.elapsed() < std::time::Duration::from_secs(60));
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("stopped early, after"), "{}", text(&output.stdout));
+    assert!(output.stderr.is_empty(), "no bar in a pipe: {}", text(&output.stderr));
+    assert_eq!(rungs(&["prove", &motor, &motor, "--seconds", "soon"]).status.code(), Some(2));
 }
 
 #[test]

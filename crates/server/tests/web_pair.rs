@@ -104,7 +104,7 @@ async fn a_search_runs_beside_the_machines_and_can_be_stopped() {
         (&json!("no difference found within this coverage"), &Value::Null)
     );
     assert!(proof["scans"].as_u64().is_some_and(|scans| scans < 10_000_000));
-    assert!(proof["text"].as_str().is_some_and(|text| text.contains("stopped by hand")), "{proof}");
+    assert!(proof["text"].as_str().is_some_and(|text| text.contains("stopped early")), "{proof}");
     assert_eq!(proof["coverage"][0][0], "rung conditions");
     for body in [json!({"do": "start", "scans": 0}), json!({"do": "start", "scans": 10_000_001}), json!({"do": "go"})] {
         assert_eq!(post(at, "/api/pair/proof", body.clone()).await.0, 422, "{body}");

@@ -223,11 +223,19 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.progress.is_some_and(Progress::is_stopped)
     }
 
+    fn argues(&self, arguing: bool) {
+        if let Some(progress) = self.progress {
+            progress.argues(arguing);
+        }
+    }
+
     /// Looks for goals that no run can reach.
     fn rule_out(&mut self) {
+        self.argues(true);
         let kept = self.corpus.iter().map(|entry| entry.both.a.machine.data());
         let states: Vec<&[u16]> = kept.chain(self.states.iter().map(Vec::as_slice)).collect();
         self.unargued = unreachable::rule_out(&mut self.goals, self.surroundings, &states);
+        self.argues(false);
     }
 
     pub(super) fn open(&self) -> bool {

@@ -231,7 +231,13 @@ fn prove<B: Side>(
     let places: Vec<_> = inputs.all.iter().map(|input| (input.at, input.kind)).collect();
     let names = terminals(&xref, &base.a);
     let loaded = base.a.machine.data();
-    let surroundings = Surroundings { outline: &outline, loaded, inputs: &places, names: &names };
+    let surroundings = Surroundings {
+        outline: &outline,
+        loaded,
+        inputs: &places,
+        names: &names,
+        progress: options.progress.as_deref(),
+    };
     let timers = timers(image, &base.a);
     let progress = options.progress.as_deref();
     let mut campaign = Campaign::new(both, &pairs, &inputs, goals, (&solver, &surroundings), timers, limits, progress);
@@ -239,7 +245,7 @@ fn prove<B: Side>(
     report.take_run(&campaign, inputs.all.len());
     if campaign.is_stopped() && campaign.found.is_none() {
         let (scans, all) = (report.scans, options.scans);
-        report.notes.push(format!("the run was stopped by hand after {scans} of {all} scans"));
+        report.notes.push(format!("the run was stopped early, after {scans} of {all} scans"));
     }
     if let Some((difference, tape)) = campaign.found.take() {
         let scratch = Both { a: base.a.fork(), b: base.b.fork() };

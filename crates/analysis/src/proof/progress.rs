@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[derive(Debug, Default)]
 pub struct Progress {
     scans: AtomicU64,
+    arguing: AtomicBool,
     shortening: AtomicBool,
     stopped: AtomicBool,
 }
@@ -26,6 +27,11 @@ impl Progress {
         self.scans.load(Ordering::Relaxed)
     }
 
+    /// It looks for what cannot happen, and makes no scans meanwhile.
+    pub fn is_arguing(&self) -> bool {
+        self.arguing.load(Ordering::Relaxed)
+    }
+
     /// A difference was found, and the way to it is being made shorter.
     pub fn is_shortening(&self) -> bool {
         self.shortening.load(Ordering::Relaxed)
@@ -33,6 +39,10 @@ impl Progress {
 
     pub(crate) fn at(&self, scans: u64) {
         self.scans.store(scans, Ordering::Relaxed);
+    }
+
+    pub(crate) fn argues(&self, arguing: bool) {
+        self.arguing.store(arguing, Ordering::Relaxed);
     }
 
     pub(crate) fn shortens(&self) {

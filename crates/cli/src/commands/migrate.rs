@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use analysis::proof::{self, RungFate};
 use convert::migrate::report::Report;
@@ -49,7 +50,10 @@ pub fn run(arguments: &MigrateArguments) -> Result<Outcome, Error> {
     let migration = migrate(&image, &map, &options).map_err(|error| Error::Use(error.to_string()))?;
     let mut report = Report::new(&opened.project.source, &image, &migration, &options);
     let names = Names::of(&arguments.out, path);
-    let writing = names.all();
+    let mut writing: Vec<PathBuf> = names.all().map(Path::to_owned).to_vec();
+    if arguments.prove {
+        writing.extend(prove::FILES.map(|name| arguments.out.join(name)));
+    }
     if let Some(there) = writing.iter().find(|target| target.exists() && !arguments.overwrite) {
         return Err(Error::Use(format!("{} exists; --overwrite replaces it", there.display())));
     }
@@ -149,7 +153,11 @@ fn proven(arguments: &MigrateArguments, image: &Image, migration: &Migration, na
     options.original.program = prove::beside(&arguments.file, &arguments.out);
     options.other.program = prove::beside(&names.program, &arguments.out);
     let map = prove::of_rows(&migration.map);
-    proof::prove_domore(image, &migration.project, &map, Some(&fates), &options)
+    let progress = Arc::new(proof::Progress::default());
+    options.progress = Some(progress.clone());
+    prove::watched(&progress, options.scans, arguments.seconds, || {
+        proof::prove_domore(image, &migration.project, &map, Some(&fates), &options)
+    })
 }
 
 /// A line of the proof's report as name and value.

@@ -2,19 +2,26 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use analysis::proof::{
-    Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Refused, Report, Verdict, fates, prove_domore,
-    prove_slc, refused_domore, refused_slc,
+    Coverage, Goal, GoalKind, Mapping, NOT_MODELLED, Named, Options, Progress, Refused, Report, Verdict, fates,
+    prove_domore, prove_slc, refused_domore, refused_slc,
 };
 use convert::AnyProject;
 use convert::migrate::map_file::{self, MapRow};
+use indicatif::{ProgressBar, ProgressStyle};
 use ladder::Severity;
 use serde_json::{Value, json};
 
 use super::{MOST_BYTES, file_name, read_file};
 use crate::args::ProveArguments;
 use crate::output::{Error, Outcome, printable};
+
+/// How often a person is told how far a run is.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// Most bytes of an address map.
 const MOST_MAP: usize = 64 << 20;
@@ -61,19 +68,29 @@ pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
     if let (Some(map), Some(path)) = (&map, &arguments.map) {
         refuse(&original.main, &second, map, &numbers, path, &options)?;
     }
-    let started = std::time::Instant::now();
-    let report = match &second {
+    if map.is_none() && matches!(second, AnyProject::Domore(_)) {
+        return Err(needs_map());
+    }
+    let progress = Arc::new(Progress::default());
+    options.progress = Some(progress.clone());
+    let started = Instant::now();
+    let report = watched(&progress, options.scans, arguments.seconds, || match &second {
         AnyProject::Rslogix(other) => {
-            options.other.family = None;
+            let other_named = Named { family: None, ..options.other.clone() };
+            let options = Options { other: other_named, ..options.clone() };
             prove_slc(&original.main, &other.main, map.as_deref(), &options)
         }
         AnyProject::Domore(document) => {
-            let Some(map) = map else {
-                return Err(needs_map());
-            };
-            prove_domore(&original.main, &document.project, &map, fates(&document.project).as_deref(), &options)
+            let fates = fates(&document.project);
+            prove_domore(
+                &original.main,
+                &document.project,
+                map.as_deref().unwrap_or_default(),
+                fates.as_deref(),
+                &options,
+            )
         }
-    };
+    });
     let seconds = started.elapsed().as_secs_f64();
     if let Some(folder) = &arguments.out {
         write(&report, folder)?;
@@ -94,6 +111,37 @@ pub fn run(arguments: &ProveArguments) -> Result<Outcome, Error> {
 /// A Do-more program has nothing at the addresses of the original.
 pub fn needs_map() -> Error {
     Error::Use("--map is needed: the address map `rungs migrate` wrote".to_owned())
+}
+
+/// Runs `work` with a bar on a terminal, and ends it after a time.
+pub fn watched<T>(progress: &Progress, scans: u64, limit: Option<Duration>, work: impl FnOnce() -> T) -> T {
+    let bar = if std::io::stderr().is_terminal() { ProgressBar::new(scans) } else { ProgressBar::hidden() };
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} scans {elapsed} {wide_msg}") {
+        bar.set_style(style);
+    }
+    let done = AtomicBool::new(false);
+    let started = Instant::now();
+    std::thread::scope(|scope| {
+        let watcher = scope.spawn(|| {
+            while !done.load(Ordering::Relaxed) {
+                std::thread::park_timeout(LOOK);
+                bar.set_position(progress.scans());
+                bar.set_message(match (progress.is_arguing(), progress.is_shortening()) {
+                    (true, _) => "looking for what cannot happen",
+                    (_, true) => "shortening the way to a difference",
+                    _ => "",
+                });
+                if limit.is_some_and(|limit| started.elapsed() >= limit) {
+                    progress.stop();
+                }
+            }
+        });
+        let result = work();
+        done.store(true, Ordering::Relaxed);
+        watcher.thread().unpark();
+        bar.finish_and_clear();
+        result
+    })
 }
 
 /// How a proof counts: anything but "no difference found" is a finding.
@@ -183,18 +231,28 @@ pub fn beside(path: &Path, folder: &Path) -> String {
     found.to_string_lossy().replace('\\', "/")
 }
 
-/// Writes the report and, if the programs differ, a scenario for each of them.
+/// What a run writes to a folder: the report, and what shows a difference.
+pub const FILES: [&str; 3] = ["proof.txt", "original.toml", "converted.toml"];
+
+/// Writes the report and, if the programs differ, a scenario for each of them; what an earlier run left is replaced.
 pub fn write(report: &Report, folder: &Path) -> Result<(), Error> {
     let failed = |path: &Path, error: std::io::Error| Error::Use(format!("{}: {error}", path.display()));
     std::fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-    let mut files = vec![("proof.txt", report.to_string())];
-    if let Some((_, example)) = &report.found {
-        files.push(("original.toml", example.original.clone()));
-        files.push(("converted.toml", example.other.clone()));
-    }
-    for (name, text) in files {
+    let example = report.found.as_ref().map(|(_, example)| example);
+    let texts = [
+        Some(report.to_string()),
+        example.map(|example| example.original.clone()),
+        example.map(|example| example.other.clone()),
+    ];
+    for (name, text) in FILES.iter().zip(texts) {
         let path = folder.join(name);
-        std::fs::write(&path, text).map_err(|error| failed(&path, error))?;
+        let written = match text {
+            Some(text) => std::fs::write(&path, text),
+            // A difference of an earlier run must not stand beside a run that found none.
+            None if path.is_file() => std::fs::remove_file(&path),
+            None => Ok(()),
+        };
+        written.map_err(|error| failed(&path, error))?;
     }
     Ok(())
 }

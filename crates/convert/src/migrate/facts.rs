@@ -80,7 +80,9 @@ impl Facts {
             let whole = address.indexed || (address.word.is_none() && address.bit.is_none() && name != "RES");
             let element = address.element.number().filter(|_| !whole);
             self.timers_changed.insert((file, element));
-            if address.bit.is_none() && name != "RES" {
+            // A bit of PRE or ACC can be its sign.
+            let number = address.bit.is_none() || address.word.is_some_and(|word| word > 0);
+            if number && name != "RES" {
                 self.timers_written.insert((file, element));
             }
         }

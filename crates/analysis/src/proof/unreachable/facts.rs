@@ -10,6 +10,7 @@ use batsat::Lit;
 
 use super::gates::{Answer, Gates};
 use super::scan::Scan;
+use crate::proof::progress::Progress;
 
 /// At least one of these bits has this value; one bit, or two.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,11 +37,12 @@ pub(super) struct Induction<'o> {
     /// Facts that the induction step of a fact needs.
     needs: BTreeMap<usize, Vec<usize>>,
     searches: u32,
+    progress: Option<&'o Progress>,
 }
 
 impl<'o> Induction<'o> {
-    pub(super) fn new(first: Scan<'o>, any: Scan<'o>) -> Induction<'o> {
-        Induction { first, any, held: Vec::new(), needs: BTreeMap::new(), searches: 0 }
+    pub(super) fn new(first: Scan<'o>, any: Scan<'o>, progress: Option<&'o Progress>) -> Induction<'o> {
+        Induction { first, any, held: Vec::new(), needs: BTreeMap::new(), searches: 0, progress }
     }
 
     /// Facts that hold after every scan.
@@ -125,7 +127,7 @@ impl<'o> Induction<'o> {
     /// Some of these that can be true, all together in one scan; none: none of them can. `None`: not known.
     fn violated(&mut self, first: bool, assumed: &[Lit], open: &[Lit]) -> Option<BTreeSet<usize>> {
         self.searches += 1;
-        if self.searches > MOST_SEARCHES {
+        if self.searches > MOST_SEARCHES || self.progress.is_some_and(Progress::is_stopped) {
             return None;
         }
         let gates = if first { &mut self.first.gates } else { &mut self.any.gates };

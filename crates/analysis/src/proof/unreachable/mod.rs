@@ -22,10 +22,14 @@ use batsat::Lit;
 use sim::outline::{Outline, Routine};
 
 use super::goals::{GoalKind, Goals, Monitor, Source};
+use super::progress::Progress;
 use super::side::Kind;
 use candidates::States;
 use facts::Induction;
 use scan::{Before, Happens, Scan, called};
+
+/// Why an argument was not finished.
+const ENDED: &str = "the run was stopped early";
 
 /// What an argument starts from.
 pub(crate) struct Surroundings<'s> {
@@ -37,6 +41,15 @@ pub(crate) struct Surroundings<'s> {
     pub(crate) inputs: &'s [(u32, Kind)],
     /// Addresses of terminals by place.
     pub(crate) names: &'s BTreeMap<u32, String>,
+    /// Can end the search.
+    pub(crate) progress: Option<&'s Progress>,
+}
+
+impl Surroundings<'_> {
+    /// Somebody asked for the end.
+    fn is_stopped(&self) -> bool {
+        self.progress.is_some_and(Progress::is_stopped)
+    }
 }
 
 /// Marks goals that cannot be reached, with the argument; `states` is data after scans of the run. Answers
@@ -46,6 +59,9 @@ pub(crate) fn rule_out(goals: &mut Goals, given: &Surroundings<'_>, states: &[&[
     if missing.is_empty() {
         return None;
     }
+    if given.is_stopped() {
+        return Some(ENDED);
+    }
     let inputs = bits(given.inputs);
     let outline = given.outline;
     let circuits = Scan::build(outline, Before::Loaded(given.loaded), &inputs)
@@ -54,7 +70,7 @@ pub(crate) fn rule_out(goals: &mut Goals, given: &Surroundings<'_>, states: &[&[
         Ok(circuits) => circuits,
         Err(why) => return Some(why),
     };
-    let mut induction = Induction::new(first, any);
+    let mut induction = Induction::new(first, any, given.progress);
     let wanted = wanted(goals, &mut induction, &missing);
     let states = States(states);
     let all: Vec<u32> = induction.any.initial.keys().copied().collect();
@@ -68,16 +84,22 @@ pub(crate) fn rule_out(goals: &mut Goals, given: &Surroundings<'_>, states: &[&[
     // Few facts often do; with more of them each other one has more to rest on.
     for (more, last) in [(constants.clone(), false), ([constants, pairs].concat(), true)] {
         if !induction.take(more) {
-            return Some("the search took too long");
+            return Some(if given.is_stopped() { ENDED } else { "the search took too long" });
         }
         let (first, any) = (induction.first.strays, induction.any.strays);
         if induction.excludes(first, any).is_none() {
+            if given.is_stopped() {
+                return Some(ENDED);
+            }
             if last {
                 return Some("an index may lead out of its file");
             }
             continue;
         }
         for (number, first, any) in &wanted {
+            if given.is_stopped() {
+                return Some(ENDED);
+            }
             let done = goals.all.get(*number).is_none_or(|goal| goal.reached || goal.impossible.is_some());
             if !done && let Some(used) = induction.excludes(*first, *any) {
                 let why = argument::of(&mut induction, &used, given);

@@ -16,12 +16,21 @@ use crate::output::{Error, printable};
 /// Characters of a page's name that come from the name of a file.
 const MOST_NAME: usize = 60;
 
+/// The list of pages.
+const INDEX: &str = "index.html";
+
+fn exists(path: &Path) -> Error {
+    Error::Use(printable(&format!("{} exists; --force overwrites it", path.display())))
+}
+
 /// Where pages go.
 pub(super) struct Pages {
     target: PathBuf,
     /// Two folders are compared: the target is a folder too.
     folder: bool,
     entries: RefCell<Vec<Entry>>,
+    /// Pages that exist are overwritten.
+    force: bool,
     /// A page was written.
     any: Cell<bool>,
 }
@@ -38,17 +47,21 @@ impl Pages {
     /// Prepares the target: a file for two files, a folder for two folders.
     ///
     /// # Errors
-    /// A target that is one of the compared files, or of the wrong sort.
-    pub(super) fn new(target: &Path, compared: &[&Path], folder: bool) -> Result<Pages, Error> {
+    /// A target that is one of the compared files, of the wrong sort, or there without `force`.
+    pub(super) fn new(target: &Path, compared: &[&Path], folder: bool, force: bool) -> Result<Pages, Error> {
         if let Some(path) = compared.iter().find(|path| is_same_file(path, target)) {
             return Err(Error::Use(printable(&format!("{}: is compared, and cannot be the page too", path.display()))));
         }
         let is_page =
             target.extension().is_some_and(|it| it.eq_ignore_ascii_case("html") || it.eq_ignore_ascii_case("htm"));
         if target.is_file() && !is_page {
-            // A page is made anew as often as one likes; a project of this name is not a page.
+            // With or without --force: a project of this name is not a page.
             let why = "exists and is not named as a page: give a name that ends with .html";
             return Err(Error::Use(printable(&format!("{}: {why}", target.display()))));
+        }
+        let first = if folder { target.join(INDEX) } else { target.to_owned() };
+        if first.is_file() && !force {
+            return Err(exists(&first));
         }
         if folder {
             std::fs::create_dir_all(target).map_err(|error| failed(target, &error))?;
@@ -56,7 +69,7 @@ impl Pages {
             let why = "is a folder: the comparison of two files is one page, give its name";
             return Err(Error::Use(printable(&format!("{}: {why}", target.display()))));
         }
-        Ok(Pages { target: target.to_owned(), folder, entries: RefCell::default(), any: Cell::new(false) })
+        Ok(Pages { target: target.to_owned(), folder, entries: RefCell::default(), force, any: Cell::new(false) })
     }
 
     /// Whether a page was written.
@@ -122,7 +135,11 @@ impl Pages {
         };
         if !difference.is_empty() || !warnings.is_empty() {
             entry.href = self.name(new);
-            write(&self.target.join(&entry.href), |out| report::diff::page(&comparison, out))?;
+            let path = self.target.join(&entry.href);
+            if path.is_file() && !self.force {
+                return Err(exists(&path));
+            }
+            write(&path, |out| report::diff::page(&comparison, out))?;
         }
         self.entries.borrow_mut().push(entry);
         Ok(())
@@ -139,7 +156,7 @@ impl Pages {
         if !self.folder {
             return Ok(self.target.clone());
         }
-        let path = self.target.join("index.html");
+        let path = self.target.join(INDEX);
         let (old, new) = (old.display().to_string(), new.display().to_string());
         let entries = self.entries.borrow();
         write(&path, |out| report::diff::index((&old, &new), &tool(), &entries, out))?;

@@ -101,7 +101,11 @@ pub fn run(arguments: &DiffArguments) -> Result<Outcome, Error> {
     let compared: Vec<&Path> =
         [Some(&arguments.old), arguments.new.as_ref()].into_iter().flatten().map(|it| &**it).collect();
     let folder = compared.len() == 2 && compared.iter().all(|path| path.is_dir());
-    let pages = arguments.html.as_ref().map(|target| html::Pages::new(target, &compared, folder)).transpose()?;
+    let pages = arguments
+        .html
+        .as_ref()
+        .map(|target| html::Pages::new(target, &compared, folder, arguments.force))
+        .transpose()?;
     let printer = Printer {
         sections: Sections::of(&arguments.only),
         json: arguments.json,
