@@ -698,7 +698,7 @@ pub struct DiffArguments {
     /// What counts and is shown; default: everything
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SECTION")]
     pub only: Vec<Section>,
-    /// Unified text for reviews: rungs as SLC text with their neighbours, then the other sections
+    /// Unified text for reviews: rungs as text (of SLC or of Do-more) with their neighbours, then the other sections
     #[arg(long, conflicts_with_all = ["two_sided", "json"])]
     pub unified: bool,
     /// Write a page with the rungs drawn side by side instead; for two folders a folder of pages with a list

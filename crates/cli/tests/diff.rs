@@ -272,6 +272,23 @@ fn pages_show_a_difference_and_never_overwrite_what_is_compared() {
 }
 
 #[test]
+fn unified_text_of_do_more_has_rungs_with_their_neighbours() {
+    let folder = folder("diff_unified_domore", &[]);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let rungs = |preset: &str, more: &str| {
+        format!("$PRGRM $Main\n\nSTR X0\nOUT Y0\n\nSTR C0\nTMR T0 {preset}\n\nSTR X1\nOUT Y1\n{more}\n$PGMEND $Main\n")
+    };
+    std::fs::write(folder.join("a.txt"), rungs("500", "")).expect("a file");
+    let more = "\n#BEGIN COMMENT\n\"fan\"\n#END\n\nSTR X2\nOUT Y2\n";
+    std::fs::write(folder.join("b.txt"), rungs("600", more)).expect("a file");
+    let shown = text(&diff(&folder, &["a.txt", "b.txt", "--unified"]), 1);
+    let expected = "--- a.txt\n+++ b.txt\n# Logic\n@@ -1,3 +1,4 @@ code block $Main\n STR X0; OUT Y0\n-STR C0; TMR T0 \
+                    500\n+STR C0; TMR T0 600\n STR X1; OUT Y1\n+(* fan *)\n+STR X2; OUT Y2\n";
+    assert_eq!(shown, expected);
+    assert_eq!(text(&diff(&folder, &["a.txt", "a.txt", "--unified"]), 0), "");
+}
+
+#[test]
 fn folders_give_a_folder_of_pages() {
     let folder = folder("diff_html_folders", &[]);
     let example = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);

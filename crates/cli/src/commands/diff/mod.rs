@@ -305,14 +305,19 @@ impl Printer {
             if !renamed.is_empty() {
                 writeln!(Printable(&mut *out), "# {old} is now {new}: {renamed}")?;
             }
-            match both.rslogix {
-                Some(programs) if self.unified => unified::write(self.sections, programs, &difference, out)?,
-                _ if how.is_some() && difference.is_empty() => writeln!(Printable(&mut *out), "{new}: equal\n")?,
-                _ => {
-                    let look = text::Look { two_sided: self.look.two_sided && !self.unified, ..self.look };
-                    let sides = ((old, &both.sides.0), (new, &both.sides.1));
-                    text::write(&look, self.sections, sides, &difference, out)?;
-                }
+            if self.unified {
+                let listings = match both.rslogix {
+                    Some((old, new)) => (unified::Listing::rslogix(old), unified::Listing::rslogix(new)),
+                    None => {
+                        (unified::Listing::domore(old, &both.sides.0), unified::Listing::domore(new, &both.sides.1))
+                    }
+                };
+                unified::write(self.sections, (&listings.0, &listings.1), &difference, out)?;
+            } else if how.is_some() && difference.is_empty() {
+                writeln!(Printable(&mut *out), "{new}: equal\n")?;
+            } else {
+                let sides = ((old, &both.sides.0), (new, &both.sides.1));
+                text::write(&self.look, self.sections, sides, &difference, out)?;
             }
         }
         out.flush()?;
