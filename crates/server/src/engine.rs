@@ -149,7 +149,8 @@ pub struct Engine {
     pub stops_at_difference: bool,
     /// When the next scan is due.
     due: Instant,
-    shown: Instant,
+    /// When the next frame is.
+    frame_due: Instant,
     number: u64,
     frames: watch::Sender<Arc<Frame>>,
 }
@@ -232,7 +233,7 @@ pub fn start(bench: Workbench) -> std::io::Result<Handle> {
         slow: false,
         stops_at_difference: true,
         due: now,
-        shown: now,
+        frame_due: now,
         number: 0,
         frames: sender,
     };
@@ -311,7 +312,9 @@ impl Engine {
             self.due = Instant::now();
             self.slow = true;
         }
-        if self.shown.elapsed() >= FRAME {
+        if self.frame_due <= Instant::now() {
+            // Counted from when it was due, so that twenty a second are twenty; not made up for where that is long ago.
+            self.frame_due = (self.frame_due + FRAME).max(Instant::now());
             if !watched {
                 // Two, so that what changed in the second one shows.
                 let _ = self.one(true) && self.one(true);
@@ -388,7 +391,6 @@ impl Engine {
     /// Shows the machine as it stands.
     fn show(&mut self) {
         self.number += 1;
-        self.shown = Instant::now();
         let state = self.bench.state();
         let controller = state.machine.controller();
         let stopped = controller.stopped();

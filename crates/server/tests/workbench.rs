@@ -107,6 +107,54 @@ fn the_past_is_bounded() {
     assert_eq!(bench.state().machine.controller().scans(), at - depth);
 }
 
+/// Counted, not timed: what is held stays below a bound however long the run and whatever is done.
+#[test]
+fn everything_that_is_kept_is_bounded() {
+    let mut bench = bench();
+    scans(&mut bench, 1);
+    bench.follow(&["N7:0".to_owned(), "T4:0.ACC".to_owned()]).expect("numbers");
+    let wide = "a".repeat(100_000);
+    for number in 0..120_000u32 {
+        set(&mut bench, "N7:0", i64::from(number % 1000));
+        if number % 1000 == 0 {
+            // Plants are the largest thing a person can do between two scans.
+            let plant = server::plant::Plant::parse(&format!(
+                "# {wide}\n[[heater]]\nname = \"h\"\non = \"N7:9/0\"\ntemperature = \"N7:2\"\nrate = 1.0\n"
+            ));
+            bench.change(Change::Plant(Some(Box::new(plant.expect("reads"))))).expect("wires");
+        }
+        bench.scan(false);
+        let kept = bench.kept();
+        assert!(kept.copies <= 200 && kept.scans <= 50_250 && kept.bytes <= 73 << 20, "{number}: {kept:?}");
+    }
+    assert!(bench.traces().iter().all(|trace| trace.since(0).count() <= 20_000));
+    let trace = &bench.traces()[0];
+    assert!(trace.forgotten() > 0, "{}", trace.since(0).count());
+    // Changes without a scan: the past is given up before memory is.
+    for number in 0..200_000 {
+        set(&mut bench, "N7:0", number % 1000);
+        assert!(bench.kept().bytes <= 73 << 20);
+    }
+    assert_eq!(read(&bench, "N7:0"), Value::Word(999));
+    scans(&mut bench, 3);
+    let depth = bench.depth();
+    assert_eq!(bench.back(depth), Ok(depth));
+    assert_eq!(read(&bench, "N7:0"), Value::Word(999), "what was done before stays done");
+    for number in 0..40 {
+        assert_eq!(bench.keep(&format!("snapshot {number}")).is_ok(), number < 32);
+    }
+    // A recording says that it is full, and what it has is what was done until then.
+    bench.record().expect("begins");
+    for number in 0..600_000 {
+        set(&mut bench, ["N7:0", "N7:3", "N7:4", "N7:5", "N7:6", "N7:7"][number % 6], 5);
+        if number % 6 == 5 {
+            bench.scan(false);
+        }
+    }
+    let scans = bench.recorder().expect("in progress").scans();
+    assert!((80_000..100_000).contains(&scans), "{scans}");
+}
+
 #[test]
 fn forces_win_over_what_is_written_and_go_with_a_restart() {
     let mut bench = bench();

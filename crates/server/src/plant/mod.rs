@@ -52,6 +52,9 @@ pub struct Plant {
     conveyor: Vec<conveyor::Conveyor>,
     #[serde(default)]
     heater: Vec<heater::Heater>,
+    /// Length of the text it was read from.
+    #[serde(skip)]
+    text: usize,
 }
 
 /// One element of a plant.
@@ -151,7 +154,8 @@ impl Plant {
     /// # Errors
     /// The line and key that are wrong, or a figure without sense.
     pub fn parse(text: &str) -> Result<Plant, String> {
-        let plant: Plant = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+        let mut plant: Plant = toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())?;
+        plant.text = text.len();
         let count = plant.elements().count();
         if count > ELEMENTS {
             return Err(format!("expected at most {ELEMENTS} elements, found {count}"));
@@ -160,6 +164,11 @@ impl Plant {
             element.check().map_err(|why| format!("{}: {why}", element.name()))?;
         }
         Ok(plant)
+    }
+
+    /// About how much memory it takes: a key of a few characters becomes a number of eight bytes.
+    pub fn bytes(&self) -> usize {
+        size_of::<Plant>() + 8 * self.text
     }
 
     fn elements(&self) -> impl Iterator<Item = &dyn Element> {

@@ -29,6 +29,19 @@ pub enum Change {
     Plant(Option<Box<Plant>>),
 }
 
+impl Change {
+    /// About how much memory it takes.
+    pub fn bytes(&self) -> usize {
+        let more = match self {
+            Change::Write { address, value: Value::Text(text) } => address.len() + text.len(),
+            Change::Write { address, .. } | Change::Force { address, .. } => address.len(),
+            Change::Plant(plant) => plant.as_ref().map_or(0, |plant| plant.bytes()),
+            Change::EnableForces(_) | Change::Mode(_) => 0,
+        };
+        size_of::<Change>() + more
+    }
+}
+
 /// A mode a person can choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeChange {

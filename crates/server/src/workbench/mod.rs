@@ -22,7 +22,7 @@ use crate::plant::Plant;
 pub use change::{Change, ModeChange};
 pub use do_more::DoMore;
 pub use flow::Flow;
-pub use history::History;
+pub use history::{History, Kept};
 pub use pair::Pair;
 pub use record::{Recorder, Subject as Recorded};
 pub use state::State;
@@ -148,6 +148,11 @@ impl Workbench {
         self.history.depth()
     }
 
+    /// How much of the past is held.
+    pub fn kept(&self) -> Kept {
+        self.history.kept()
+    }
+
     /// Runs one scan; `watched` notes its power flow. `false`: the machine does not execute or the tape has ended,
     /// nothing was done.
     pub fn scan(&mut self, watched: bool) -> bool {
@@ -159,7 +164,7 @@ impl Workbench {
                 for change in &next.changes {
                     // What the tape writes was found when it was read.
                     if self.state.apply(change).is_ok() {
-                        self.history.changed(change.clone());
+                        self.history.changed(change.clone(), &self.state);
                     }
                 }
                 next.dt
@@ -201,7 +206,7 @@ impl Workbench {
         if let Some(recorder) = &mut self.recorder {
             recorder.changed(&change);
         }
-        self.history.changed(change);
+        self.history.changed(change, &self.state);
         Ok(())
     }
 

@@ -8,13 +8,17 @@ use sim::scenario::spell::{duration, literal, quoted};
 
 use super::change::{Change, ModeChange};
 
-/// Steps of one recording.
+/// Steps of one recording, and values that are set or expected in all of them: a plant model can write every analog
+/// input in every scan.
 const STEPS: usize = 100_000;
+const SETS: usize = 500_000;
 
 /// A recording that began with the data of the project, in program mode.
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
     steps: Vec<Step>,
+    /// Values set in all steps.
+    sets: usize,
     /// What a scenario cannot say, in words.
     notes: Vec<String>,
     full: bool,
@@ -43,6 +47,10 @@ pub struct Subject {
 impl Recorder {
     /// A change was made before the next scan.
     pub fn changed(&mut self, change: &Change) {
+        self.full |= self.sets >= SETS;
+        if self.full {
+            return;
+        }
         let before = self.scans() > 0;
         // A change behind an expectation is another step, as one behind a scan.
         let begun = self.steps.last().is_some_and(|step| step.scans == 0 && step.expect.is_empty());
@@ -58,6 +66,7 @@ impl Recorder {
             Change::Write { address, value } => {
                 step.sets.retain(|(other, _)| other != address);
                 step.sets.push((address.clone(), value.clone()));
+                self.sets += 1;
             }
             Change::Mode(ModeChange::Run) => step.program_run = before,
             // What a plant writes is recorded as written.
@@ -74,6 +83,9 @@ impl Recorder {
 
     /// A scan was run.
     pub fn scanned(&mut self, dt: Duration) {
+        if self.full {
+            return;
+        }
         let full = self.steps.len() == STEPS;
         match self.steps.last_mut() {
             // The first scan of run passes no time, whatever the step says.
@@ -93,6 +105,10 @@ impl Recorder {
 
     /// These values are expected here.
     pub fn expect(&mut self, values: impl IntoIterator<Item = (String, Value)>) {
+        self.full |= self.sets >= SETS;
+        if self.full {
+            return;
+        }
         if self.steps.is_empty() {
             self.steps.push(Step::default());
         }
@@ -100,6 +116,7 @@ impl Recorder {
         for (address, value) in values {
             step.expect.retain(|(other, _)| *other != address);
             step.expect.push((address, value));
+            self.sets += 1;
         }
     }
 

@@ -41,6 +41,11 @@ impl State {
         }
     }
 
+    /// About how much memory its plant takes.
+    pub fn plant_bytes(&self) -> usize {
+        self.plant.as_ref().map_or(0, Plant::bytes)
+    }
+
     /// Makes a change.
     ///
     /// # Errors
