@@ -17,7 +17,8 @@ const SETS: usize = 500_000;
 #[derive(Clone, Debug, Default)]
 pub struct Recorder {
     steps: Vec<Step>,
-    /// Values set in all steps.
+    /// Scans of all steps, and values set or expected in them.
+    scans: u64,
     sets: usize,
     /// What a scenario cannot say, in words.
     notes: Vec<String>,
@@ -91,16 +92,20 @@ impl Recorder {
             // The first scan of run passes no time, whatever the step says.
             Some(last) if last.expect.is_empty() && (last.scans == 0 || last.dt.is_zero() || last.dt == dt) => {
                 last.scans += 1;
+                self.scans += 1;
                 last.dt = dt;
             }
             _ if full => self.full = true,
-            _ => self.steps.push(Step { dt, scans: 1, ..Step::default() }),
+            _ => {
+                self.steps.push(Step { dt, scans: 1, ..Step::default() });
+                self.scans += 1;
+            }
         }
     }
 
     /// Scans recorded.
     pub fn scans(&self) -> u64 {
-        self.steps.iter().map(|step| step.scans).sum()
+        self.scans
     }
 
     /// These values are expected here.
