@@ -49,6 +49,10 @@ pub mod key {
     pub const LEFT: &str = "\u{E012}";
     /// Arrow right.
     pub const RIGHT: &str = "\u{E014}";
+    /// Control, held down until [`NULL`].
+    pub const CONTROL: &str = "\u{E009}";
+    /// All keys are up again.
+    pub const NULL: &str = "\u{E000}";
     /// Tab.
     pub const TAB: &str = "\u{E004}";
 }

@@ -61,7 +61,8 @@ export function actions(app, { bit = null, forcible = false, values = [], addres
       if (app.forces.has(bit)) items.push([`Remove the force of ${bit}`, force(null)]);
     }
     if (items.length && values.length) items.push(null);
-    for (const address of values) {
+    // What the simulation has no value for cannot be written.
+    for (const address of values.filter((one) => app.live.values.get(one) !== null)) {
       items.push([`Edit ${address} (now ${now(address)})…`, () => (edit ?? ((one) => app.edit(one)))(address)]);
     }
     if (items.length) items.push(null);

@@ -36,14 +36,12 @@ export function palette(app) {
       show(places(""));
       return;
     }
-    const [uses, found] = await Promise.all([
-      get(`/api/uses?address=${encodeURIComponent(text)}`).catch(() => null),
-      get(`/api/search?q=${encodeURIComponent(text)}`).catch((problem) => ({ hits: [], left_out: 0, problem: problem.message })),
-    ]);
+    const found = await get(`/api/search?q=${encodeURIComponent(text)}`).catch((problem) => ({ named: null, hits: [], left_out: 0, problem: problem.message }));
     if (mine !== asked) return;
     const items = [];
     const views = places(text);
-    if (uses) items.push(item(`${uses.address} ${uses.symbol}`, `address, ${uses.uses.length + uses.left_out} uses`, () => app.open(uses.address)));
+    const { named } = found;
+    if (named) items.push(item(`${named.address} ${named.symbol}`, `address, ${named.uses} uses`, () => app.open(named.address)));
     items.push(...views);
     for (const hit of found.hits.slice(0, 100)) {
       const where = hit.rung === null ? "" : `${app.routineName(hit.routine)} rung ${hit.rung}: `;

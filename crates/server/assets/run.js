@@ -3,7 +3,7 @@
 import { control, tell } from "./api.js";
 import { button, byId, el, time } from "./dom.js";
 
-const SPEEDS = [["0.1", "slow ×0.1"], ["1", "real time"], ["10", "×10"], ["100", "×100"], ["max", "as fast as possible"]];
+const SPEEDS = [["0.1", "×0.1"], ["1", "real time"], ["10", "×10"], ["100", "×100"], ["max", "fastest"]];
 
 function run(speed) {
   return control(speed === "max" ? { do: "run", speed: null } : { do: "run", speed: Number(speed) });
@@ -11,7 +11,7 @@ function run(speed) {
 
 /** The toolbar. */
 export function toolbar(app) {
-  const speed = el("select", { ariaLabel: "Speed", on: { change: () => {
+  const speed = el("select", { id: "speed", ariaLabel: "Speed", on: { change: () => {
     if (app.live.status.pace !== "paused") run(speed.value);
   } } }, SPEEDS.map(([value, text]) => el("option", { value, selected: value === "1" }, text)));
   const go = el("button", { type: "button", id: "run", title: "Run or pause (Space)", on: { click: () => app.toggleRun() } }, "Run");
@@ -25,7 +25,7 @@ export function toolbar(app) {
     [["program", "Program"], ["run", "Run"], ...(app.project.dialect === "slc" ? [["test", "Test"]] : [])].map(([value, text]) => el("option", { value }, text)));
   // What a controller comes to, but is not switched to.
   for (const [value, text] of [["fault", "Fault"], ["suspend", "Suspend"]]) mode.append(el("option", { value, hidden: true, disabled: true }, text));
-  const scan = el("input", { type: "number", min: 0.1, max: 10000, step: "any", ariaLabel: "Milliseconds from one scan to the next",
+  const scan = el("input", { id: "scan-time", type: "number", min: 0.1, max: 10000, step: "any", ariaLabel: "Milliseconds from one scan to the next",
     on: { change: () => control({ do: "scan-time", ms: Number(scan.value) }) } });
   const more = button("More…", "Run to a condition, snapshots, recording, plant, power cycle, begin again", () => app.goView("session"), { id: "more" });
   byId("controls").replaceChildren(...(app.readOnly ? [el("span", {}, "read-only")] : [

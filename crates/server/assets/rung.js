@@ -96,14 +96,16 @@ export class Rung {
     this.parts.forEach(({ node }, number) => {
       const box = boxes[number];
       if (!box) return;
-      const hit = draw("rect", { class: "hit", x: box.x - 2, y: box.y - 2, width: box.width + 4, height: box.height + 4 });
+      // A finger needs some room.
+      const [x, y] = [Math.max(2, (32 - box.width) / 2), Math.max(2, (32 - box.height) / 2)];
+      const hit = draw("rect", { class: "hit", x: box.x - x, y: box.y - y, width: box.width + 2 * x, height: box.height + 2 * y });
       const sign = node.querySelector(".sign, .frame");
       const d = sign?.getAttribute("d").match(/-?\d+(\.\d+)?/g)?.map(Number) ?? [];
       node.prepend(hit);
       if (!sign || d.length < 2) return;
       const at = sign.getBBox();
-      const [x, y] = [at.x + at.width + 2, sign.classList.contains("frame") ? at.y - 2 : at.y - 2];
-      node.append(draw("path", { class: "rise", d: `M${x} ${y + 7}h9l-4.5 -8z` }), draw("path", { class: "fall", d: `M${x} ${y - 1}h9l-4.5 8z` }));
+      const [right, top] = [at.x + at.width + 2, at.y - 2];
+      node.append(draw("path", { class: "rise", d: `M${right} ${top + 7}h9l-4.5 -8z` }), draw("path", { class: "fall", d: `M${right} ${top - 1}h9l-4.5 8z` }));
     });
   }
 

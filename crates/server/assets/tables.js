@@ -136,11 +136,11 @@ export function timers(app, view) {
     const bar = el("meter", { min: 0, max: 1, value: 0, ariaLabel: `${timer.address} progress` });
     const seconds = el("span", { class: "seconds" });
     bars.push([timer, bar, seconds]);
-    return el("tr", {}, el("th", { scope: "row" }, link(app, timer.address)), el("td", {}, timer.kind), el("td", { class: "symbol" }, timer.symbol),
+    return el("tr", {}, el("th", { scope: "row" }, link(app, timer.address)), el("td", {}, timer.kind), el("td", { class: "symbol" }, timer.symbol, timer.symbol && timer.description ? el("br") : "", el("span", { class: "description" }, timer.description.replaceAll("\n", " "))),
       el("td", {}, cell(app, timer.accumulated)), el("td", {}, timer.preset ? cell(app, timer.preset) : "in the rung"), el("td", { class: "progress" }, bar, seconds), el("td", {}, cell(app, timer.done)));
   });
   view.replaceChildren(el("h2", {}, "Timers and counters"), el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: "Timers and counters" }, el("table", {},
-    el("thead", {}, el("tr", {}, ["Address", "Kind", "Symbol", "Accum", "Preset", "Progress", "Done"].map((text) => el("th", {}, text)))),
+    el("thead", {}, el("tr", {}, ["Address", "Kind", "Symbol and description", "Accum", "Preset", "Progress", "Done"].map((text) => el("th", {}, text)))),
     el("tbody", {}, rows))));
   const stop = follow(app, view, "table");
   const stopBars = app.live.listen((_, live) => {

@@ -276,6 +276,19 @@ impl Machine {
         })
     }
 
+    /// What an input terminal or word of terminals carries, whatever forces make of it. `None` for an address that is no
+    /// input.
+    pub fn input(&self, address: &Address) -> Option<Value> {
+        let location = self.locate(address).ok()?;
+        let (first, count) = self.program.inputs;
+        let at = location.word as usize;
+        let word = *self.state.inputs.get(at.checked_sub(first).filter(|at| *at < count)?)?;
+        Some(match location.width {
+            Width::Bit => Value::Bit(word >> location.bit & 1 != 0),
+            _ => Value::Word(word as i16),
+        })
+    }
+
     /// Installs or removes a force on an input or output bit; `None` removes. Forces act while they are
     /// enabled, see [`Machine::enable_forces`]. `false`: the address is no bit of I or O.
     pub fn force(&mut self, address: &Address, state: Option<bool>) -> bool {

@@ -95,3 +95,10 @@ pub(crate) fn make_ready(browser: &Browser, page: &str) {
     toggle(browser, "I:0.0/1");
     toggle(browser, "I:0.0/2");
 }
+
+/// Asks the interface for something, as the page does.
+pub(crate) fn api(browser: &Browser, path: &str, body: &str) {
+    browser.run(&format!(
+        "return fetch('/api/{path}', {{method: 'POST', headers: {{'Content-Type': 'application/json'}}, body: JSON.stringify({body})}})"
+    ));
+}

@@ -114,6 +114,7 @@ fn timers(project: &Project, documentation: &Documentation<'_>) -> Vec<TimerView
             address: element.to_owned(),
             kind: String::new(),
             symbol: documentation.shown(element).name.into_owned(),
+            description: documentation.shown(element).description.join("\n"),
             preset: None,
             accumulated: format!("{element}.Acc"),
             done: format!("{element}.Done"),
@@ -242,6 +243,7 @@ impl Program for DoMoreProgram {
             kind: hit.kind.to_owned(),
             text: hit.text.clone(),
         });
-        Ok(HitsView { hits: hits.collect(), left_out: found.list.len().saturating_sub(LISTED) + found.not_listed })
+        let left_out = found.list.len().saturating_sub(LISTED) + found.not_listed;
+        Ok(HitsView { named: None, hits: hits.collect(), left_out })
     }
 }

@@ -111,6 +111,8 @@ pub struct TimerView {
     pub kind: String,
     /// Symbol or nickname.
     pub symbol: String,
+    /// Description.
+    pub description: String,
     /// Address of its preset, where it has one.
     pub preset: Option<String>,
     /// Address of its accumulated value.
@@ -247,10 +249,23 @@ pub struct UseView {
 /// What a search found.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct HitsView {
+    /// The address or symbol the text is.
+    pub named: Option<NamedView>,
     /// In program order.
     pub hits: Vec<HitView>,
     /// Hits that are not listed because there are too many.
     pub left_out: usize,
+}
+
+/// An address that was named.
+#[derive(Clone, Debug, Serialize)]
+pub struct NamedView {
+    /// The address.
+    pub address: String,
+    /// Symbol or nickname.
+    pub symbol: String,
+    /// How many uses it has.
+    pub uses: usize,
 }
 
 /// One hit.

@@ -140,6 +140,7 @@ fn timer(timer: &analysis::TimerCounter) -> TimerView {
     TimerView {
         kind: timer.mnemonics().join(" "),
         symbol: timer.symbol.clone().unwrap_or_default(),
+        description: timer.description.join("\n"),
         preset: Some(format!("{address}.PRE")),
         accumulated: format!("{address}.ACC"),
         done: format!("{address}/DN"),
@@ -236,7 +237,8 @@ impl Program for SlcProgram {
             kind: hit.kind.to_owned(),
             text: hit.text.clone(),
         });
-        Ok(HitsView { hits: hits.collect(), left_out: found.list.len().saturating_sub(LISTED) + found.not_listed })
+        let left_out = found.list.len().saturating_sub(LISTED) + found.not_listed;
+        Ok(HitsView { named: None, hits: hits.collect(), left_out })
     }
 }
 
@@ -258,6 +260,8 @@ fn instruction(image: &Image, instruction: &Instruction) -> InstructionView {
         };
         if matches!(kind, Some(Kind::Timer | Kind::Counter | Kind::Control)) {
             element = direct(operand).filter(|address| address.word.is_none());
+            // A whole element has no value of its own.
+            continue;
         }
         match (member, &element, direct(operand)) {
             (Some(member), Some(element), _) => {

@@ -10,7 +10,7 @@ use super::asked::{Address, SAFE, Text, Whole};
 use super::pair::Side;
 use super::problem::Problem;
 use super::{Served, Status};
-use crate::view::{DataView, HitsView, Outline, RungView, UsesView};
+use crate::view::{DataView, HitsView, NamedView, Outline, RungView, UsesView};
 
 type Answer<T> = Result<Json<T>, Problem>;
 type Asked<T> = Result<Query<T>, QueryRejection>;
@@ -125,8 +125,16 @@ pub(super) async fn search(Side(served): Side, asked: Asked<For>) -> Answer<Hits
     if q.as_str().trim().is_empty() {
         return Ok(Json(HitsView::default()));
     }
-    let found = spawn_blocking(move || served.program.search(q.as_str())).await.map_err(broken)?;
-    found.map(Json).map_err(Problem::refused)
+    let look = move || {
+        let text = q.as_str();
+        let named = served.program.uses(text.trim()).ok().map(|found| NamedView {
+            uses: found.uses.len() + found.left_out,
+            address: found.address,
+            symbol: found.symbol,
+        });
+        served.program.search(text).map(|hits| HitsView { named, ..hits })
+    };
+    spawn_blocking(look).await.map_err(broken)?.map(Json).map_err(Problem::refused)
 }
 
 /// From which scan on.

@@ -11,7 +11,7 @@ use render::scene::{Node, Scene};
 use sim::scenario::Controller;
 
 use super::flow::{AFTER, EXECUTED, Flow};
-use super::subject::Subject;
+use super::subject::{Point, Subject};
 
 /// A rung as wires with instructions between them, in the order of power flow.
 #[derive(Clone, Debug, Default)]
@@ -231,6 +231,14 @@ impl Subject for DoMore {
 
     fn forces_enabled(&self) -> bool {
         self.enabled
+    }
+
+    /// A force stands in the memory of the point, for inputs and outputs alike.
+    fn point(&self, name: &str) -> Point {
+        match self.side.machine.read(name).ok().filter(|_| is_input(name)) {
+            Some(value) => Point::Input(value),
+            None => Point::ReadBack,
+        }
     }
 
     fn terminal(&self, address: &str) -> Option<Value> {

@@ -26,7 +26,7 @@ pub use history::{History, Kept};
 pub use pair::Pair;
 pub use record::{Recorder, Subject as Recorded};
 pub use state::State;
-pub use subject::{Slc, Subject};
+pub use subject::{Point, Slc, Subject};
 pub use tape::Tape;
 use trend::Trace;
 
@@ -173,8 +173,12 @@ impl Workbench {
         let Some(scanned) = self.state.scan(usual, watched.then_some(&mut self.flow)) else { return false };
         self.history.scanned(usual, &self.state);
         if let Some(recorder) = &mut self.recorder {
+            let written = !scanned.written.is_empty();
             for (address, value) in scanned.written {
                 recorder.changed(&Change::Write { address, value });
+            }
+            if written {
+                recorder.forced(&self.state);
             }
             recorder.scanned(scanned.dt);
         }
@@ -205,6 +209,7 @@ impl Workbench {
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.changed(&change);
+            recorder.forced(&self.state);
         }
         self.history.changed(change, &self.state);
         Ok(())

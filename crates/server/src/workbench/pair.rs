@@ -9,7 +9,7 @@ use ladder::{Address, FileType, Image, Value};
 use sim::scenario::{Controller, Stop};
 
 use super::flow::Flow;
-use super::subject::{Slc, Subject};
+use super::subject::{Point, Slc, Subject};
 
 /// An address that begins so is the other program's; all else is the original's.
 pub const OTHER: &str = "other:";
@@ -321,6 +321,10 @@ impl Subject for Pair {
 
     fn forces_enabled(&self) -> bool {
         self.a.forces_enabled()
+    }
+
+    fn point(&self, name: &str) -> Point {
+        self.a.point(name)
     }
 
     fn terminal(&self, address: &str) -> Option<Value> {

@@ -1,5 +1,6 @@
 //! What was done on the workbench, as a scenario that replays it.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::Duration;
 
@@ -7,6 +8,8 @@ use ladder::Value;
 use sim::scenario::spell::{duration, literal, quoted};
 
 use super::change::{Change, ModeChange};
+use super::state::State;
+use super::subject::Point;
 
 /// Steps of one recording, and values that are set or expected in all of them: a plant model can write every analog
 /// input in every scan.
@@ -22,12 +25,16 @@ pub struct Recorder {
     sets: usize,
     /// What a scenario cannot say, in words.
     notes: Vec<String>,
+    /// Points that were forced, by name: a forced input is recorded as written.
+    forced: BTreeSet<String>,
     full: bool,
 }
 
 #[derive(Clone, Debug, Default)]
 struct Step {
     program_run: bool,
+    /// What was done that is said in words besides.
+    notes: Vec<String>,
     sets: Vec<(String, Value)>,
     dt: Duration,
     scans: u64,
@@ -77,8 +84,40 @@ impl Recorder {
                 step.program_run = true;
                 self.note("a power cycle: the scenario leaves and enters run instead");
             }
-            Change::Force { address, .. } => self.note(&format!("a force of {address}: a scenario has no forces")),
-            Change::EnableForces(_) => self.note("forces enabled or disabled: a scenario has no forces"),
+            Change::Force { address, state } => step.notes.push(match state {
+                Some(on) => format!("{address} forced {}", if *on { "ON" } else { "OFF" }),
+                None => format!("force of {address} removed"),
+            }),
+            Change::EnableForces(on) => {
+                step.notes.push(format!("forces {}", if *on { "enabled" } else { "disabled" }));
+            }
+        }
+    }
+
+    /// Forces act on what was just written, or were changed themselves: forced inputs are recorded with what the program
+    /// reads there. A force of an output that the program does not see needs no more than the words of its step.
+    pub fn forced(&mut self, state: &State) {
+        self.forced.extend(state.forces.keys().cloned());
+        let enabled = state.machine.forces_enabled();
+        let mut reads = Vec::new();
+        for name in &self.forced {
+            let forced = state.forces.get(name).filter(|_| enabled);
+            match (state.machine.point(name), forced) {
+                (Point::Input(_), Some(on)) => reads.push((name.clone(), Value::Bit(*on))),
+                (Point::Input(carries), None) => reads.push((name.clone(), carries)),
+                (Point::ReadBack, Some(_)) => {
+                    let note = format!("a force of {name}, which the program reads back");
+                    if !self.notes.contains(&note) {
+                        self.notes.push(note);
+                    }
+                }
+                (Point::Output | Point::ReadBack, _) => {}
+            }
+        }
+        let Some(step) = self.steps.last_mut().filter(|step| step.scans == 0 && step.expect.is_empty()) else { return };
+        for (name, value) in reads {
+            step.sets.retain(|(other, _)| *other != name);
+            step.sets.push((name, value));
         }
     }
 
@@ -149,6 +188,9 @@ impl Recorder {
             let _ = writeln!(text, "\n[[step]]");
             if step.program_run {
                 let _ = writeln!(text, "mode = \"program-run\"");
+            }
+            if !step.notes.is_empty() {
+                let _ = writeln!(text, "note = {}", quoted(&step.notes.join("; ")));
             }
             table(&mut text, "set", &step.sets);
             if step.scans > 0 {

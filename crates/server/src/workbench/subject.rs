@@ -72,8 +72,21 @@ pub trait Subject: Send + Sync {
     fn enable_forces(&mut self, on: bool) -> Result<(), String>;
     /// Installed forces act.
     fn forces_enabled(&self) -> bool;
+    /// What a recording can say of a force of this point, as [`Subject::force`] names it.
+    fn point(&self, name: &str) -> Point;
     /// What an output terminal carries, forces applied; `None` for an address that is no output.
     fn terminal(&self, address: &str) -> Option<Value>;
+}
+
+/// A point that can be forced.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Point {
+    /// An input, and what its terminal carries: forced, the program reads what it would read if that were written.
+    Input(Value),
+    /// An output whose force the program does not see.
+    Output,
+    /// An output whose force the program reads back.
+    ReadBack,
 }
 
 /// An SLC 500 or MicroLogix machine.
@@ -213,6 +226,11 @@ impl Subject for Slc {
     fn forces_enabled(&self) -> bool {
         let enabled = Address::parse("S:1/5").ok().and_then(|address| self.side.machine.get(&address).ok());
         enabled == Some(Value::Bit(true))
+    }
+
+    fn point(&self, name: &str) -> Point {
+        let input = Address::parse(name).ok().and_then(|address| self.side.machine.input(&address));
+        input.map_or(Point::Output, Point::Input)
     }
 
     fn terminal(&self, address: &str) -> Option<Value> {
