@@ -127,8 +127,10 @@ class App {
       byId("view").replaceChildren(el("p", { class: "wrong" }, problem.message));
       return;
     }
-    if (this.showing === mine) this.stop = stop;
-    else stop?.();
+    if (this.showing === mine) {
+      this.stop = stop;
+      byId("view").dataset.shown = location.hash;
+    } else stop?.();
   }
 
   goView(name) {

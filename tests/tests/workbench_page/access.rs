@@ -39,7 +39,7 @@ fn busy(browser: &Browser, page: &str) {
 fn ready(browser: &Browser, page: &str, view: &str) {
     show(browser, page, view);
     match view {
-        _ if view.starts_with("ladder") => browser.wait_for("document.querySelector('.rung svg, svg.rung')"),
+        _ if view.starts_with("ladder") => browser.wait_for("document.querySelector('svg.rung')"),
         "trend" => browser.wait_for("document.querySelectorAll('#view tbody tr').length === 2"),
         _ => {}
     }
@@ -182,7 +182,7 @@ fn the_main_job_goes_with_keys_alone() {
         browser.keys(key::DOWN);
     }
     browser.keys(key::ENTER);
-    browser.wait_for("document.querySelector('.banner.forces').textContent.includes('I:0.0/1 OFF')");
+    browser.wait_for("document.querySelector('.banner.forces')?.textContent.includes('I:0.0/1 OFF')");
     browser.wait_for("document.activeElement.matches('.forced-off')");
     // Anywhere by search; run, pause and back by letters.
     browser.run("document.querySelector('#view').focus()");

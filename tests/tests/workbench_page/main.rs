@@ -2,6 +2,7 @@
 
 mod access;
 mod support;
+mod views;
 
 use std::path::Path;
 

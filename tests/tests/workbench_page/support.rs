@@ -59,10 +59,12 @@ pub(crate) fn motor() -> String {
     serve(slc(Path::new(&format!("{EXAMPLES}motor/motor.RSS"))), None)
 }
 
-/// The page of one view.
+/// The page of one view, when it is all there.
 pub(crate) fn show(browser: &Browser, page: &str, view: &str) {
     browser.go(&format!("{page}#{view}"));
-    browser.wait_for("document.querySelector('#view h2') && document.querySelector('#status').textContent");
+    browser.wait_for(&format!(
+        "document.querySelector('#view')?.dataset.shown === '#{view}' && document.querySelector('#status').textContent"
+    ));
 }
 
 pub(crate) fn lamp(address: &str) -> String {
