@@ -56,6 +56,9 @@ export class Live {
   status = null;
   rungs = new Map();
   values = new Map();
+  /** Of two programs side by side: power flow of the other one, and the values of both by row. */
+  otherRungs = new Map();
+  rows = new Map();
 
   constructor() {
     this.#connect();
@@ -81,6 +84,8 @@ export class Live {
     this.status = news.status;
     for (const [rung, bits] of Object.entries(news.rungs ?? {})) this.rungs.set(rung, bits);
     for (const [address, value] of Object.entries(news.values ?? {})) this.values.set(address, value);
+    for (const [rung, bits] of Object.entries(news.other_rungs ?? {})) this.otherRungs.set(rung, bits);
+    for (const [row, values] of Object.entries(news.rows ?? {})) this.rows.set(Number(row), values);
     for (const listener of this.#listeners) listener(news, this);
   }
 
@@ -91,7 +96,10 @@ export class Live {
     return () => this.#listeners.delete(listener);
   }
 
-  /** Says what a part of the page shows: rungs as [routine, rung], addresses. Nothing shown: `null`. */
+  /**
+   * Says what a part of the page shows: rungs as [routine, rung], addresses; of two programs rungs of the other one and
+   * rows. Nothing shown: `null`.
+   */
   see(part, shown) {
     if (shown) this.#sources.set(part, shown);
     else this.#sources.delete(part);
@@ -105,12 +113,18 @@ export class Live {
     if (this.#socket.readyState !== WebSocket.OPEN) return;
     const rungs = new Map();
     const values = new Set();
+    const others = new Map();
+    const rows = new Set();
     for (const shown of this.#sources.values()) {
       for (const rung of shown.rungs ?? []) rungs.set(rung.join(":"), rung);
       for (const address of shown.values ?? []) values.add(address);
+      for (const rung of shown.otherRungs ?? []) others.set(rung.join(":"), rung);
+      for (const row of shown.rows ?? []) rows.add(row);
     }
     // The server refuses more; what is beyond is not on the screen.
     const see = { rungs: [...rungs.values()].slice(0, 500), values: [...values].slice(0, 5000) };
+    if (others.size) see.other_rungs = [...others.values()].slice(0, 500);
+    if (rows.size) see.rows = [...rows].slice(0, 5000);
     this.#socket.send(JSON.stringify(see));
   }
 }

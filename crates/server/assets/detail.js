@@ -24,7 +24,7 @@ export async function open(app, address) {
   if (!panel.contains(document.activeElement)) opener = document.activeElement;
   let found;
   try {
-    found = await get(`/api/uses?address=${encodeURIComponent(address)}`);
+    found = await get(`${app.api}/uses?address=${encodeURIComponent(address)}`);
   } catch (problem) {
     tell(problem.message, "wrong");
     return;
@@ -32,14 +32,14 @@ export async function open(app, address) {
   stop?.();
   const value = el("output", { class: "value" }, "…");
   const forced = el("strong", { class: "forced-word" });
-  const bit = (on) => button(on ? "1" : "0", `Write ${on}`, () => post("/api/write", { address: found.address, value: on }));
+  const bit = (on) => button(on ? "1" : "0", `Write ${on}`, () => post(`${app.api}/write`, { address: found.address, value: on }));
   const input = el("input", { type: "text", ariaLabel: `New value of ${found.address}`, size: 10, autocomplete: "off" });
   const write = el("form", { on: { submit: (event) => {
     event.preventDefault();
-    post("/api/write", { address: found.address, value: typed(input.value) });
+    post(`${app.api}/write`, { address: found.address, value: typed(input.value) });
   } } }, input, el("button", { type: "submit" }, "Write"));
   const force = (state, text) =>
-    button(text, `${text} ${found.address}`, () => post("/api/force", { address: found.address, state }));
+    button(text, `${text} ${found.address}`, () => post(`${app.api}/force`, { address: found.address, state }));
   const point = app.project.points.some((point) => point.address === found.address && !point.analog) || /^[IOXY]/.test(found.address);
   panel.replaceChildren(
     el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app), { class: "close", ariaLabel: "Close" })),

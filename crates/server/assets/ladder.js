@@ -22,7 +22,7 @@ export async function ladder(app, view, routine, goal, mark = true) {
   const file = app.project.routines.find((one) => one.number === routine);
   if (!file) throw new Error(`There is no program file or code block ${routine}.`);
   const width = columns(view);
-  const heights = await get(`/api/routines/${routine}/heights?width=${width}`);
+  const heights = await get(`${app.api}/routines/${routine}/heights?width=${width}`);
   const rungs = [];
   for (let index = 0; index < file.rungs; index += 1) {
     const rung = el("section", { class: "rung rung-place", data: { rung: index }, ariaLabel: `Rung ${index}` });
@@ -54,7 +54,7 @@ export async function ladder(app, view, routine, goal, mark = true) {
   };
 
   async function chunk(from) {
-    const views = await get(`/api/routines/${routine}/rungs?from=${from}&count=${CHUNK}&width=${width}`);
+    const views = await get(`${app.api}/routines/${routine}/rungs?from=${from}&count=${CHUNK}&width=${width}`);
     for (const one of views) {
       const rung = new Rung(app, routine, one, rungs[one.rung]);
       drawn.set(one.rung, rung);

@@ -6,6 +6,7 @@ import { button, byId, el } from "./dom.js";
 import { fault } from "./fault.js";
 import { help } from "./help.js";
 import { ladder } from "./ladder.js";
+import { Side, pair } from "./pair.js";
 import { palette } from "./palette.js";
 import { session } from "./session.js";
 import { toolbar } from "./run.js";
@@ -23,6 +24,7 @@ const VIEWS = {
   forces: ["Forces", forces],
   watch: ["Watch list", watch],
   trend: ["Trend", trend],
+  pair: ["Side by side", pair],
 };
 
 /** Names of the groups of the tree, as the vendors' software has them. */
@@ -32,14 +34,18 @@ const GROUPS = {
 };
 
 class App {
-  constructor(project, status) {
+  constructor(project, status, other) {
     this.project = project;
+    /** What asks for this program. */
+    this.api = "/api";
+    /** The other one of two programs side by side. */
+    this.other = other && new Side(this, other);
     this.readOnly = status.read_only;
     this.live = new Live();
     this.key = `rungs-watch:${project.file}`;
     this.watched = this.#kept();
     this.stop = null;
-    byId("title").textContent = project.file;
+    byId("title").textContent = other ? `${project.file} ⇄ ${other.file}` : project.file;
     byId("title").title = project.controller;
     this.tree();
     toolbar(this);
@@ -61,7 +67,7 @@ class App {
   get places() {
     const { routines, data_files: files } = this.project;
     return [
-      ...Object.entries(VIEWS).map(([key, [name]]) => [name, "view", key]),
+      ...Object.entries(VIEWS).filter(([key]) => key !== "pair" || this.other).map(([key, [name]]) => [name, "view", key]),
       ...routines.map((one) => [`${one.title} ${one.description}`.trim(), "program", `ladder/${one.number}`]),
       ...files.map((one) => [this.dataName(one), "data", `data/${encodeURIComponent(one.label)}`]),
     ];
@@ -78,6 +84,7 @@ class App {
     const group = (name, items) => el("details", { open: true }, el("summary", {}, name), el("ul", {}, items));
     byId("tree").replaceChildren(
       el("p", { class: "controller" }, this.project.controller),
+      this.other ? group("Two programs", views("pair")) : "",
       group("Controller", views("controller", "session", "points", "timers", "fault")),
       group(names.program, this.project.routines.map((one) => link(`ladder/${one.number}`, one.title, `${one.description} ${one.rungs} rungs`.trim()))),
       group(names.data, this.project.data_files.map((one) => link(`data/${encodeURIComponent(one.label)}`, this.dataName(one)))),
@@ -110,6 +117,7 @@ class App {
     if (view === "ladder") this.show(() => ladder(this, main, Number(rest[0]), rest[1] === undefined ? null : Number(rest[1])));
     else if (view === "data") this.show(() => dataFile(this, main, decodeURIComponent(rest[0] ?? "")));
     else if (VIEWS[view]) this.show(() => VIEWS[view][1](this, main));
+    else if (this.other) location.replace("#pair");
     else if (this.project.routines.length) location.replace(`#ladder/${this.project.routines[0].number}`);
     else location.replace("#controller");
   }
@@ -148,7 +156,8 @@ class App {
   }
 
   open(address) {
-    return open(this, address);
+    const other = this.other && address.startsWith(this.other.prefix);
+    return other ? this.other.open(address.slice(this.other.prefix.length)) : open(this, address);
   }
 
   /** The watch list of this program, as it was when the page was left. */
@@ -230,4 +239,4 @@ class App {
 }
 
 const [project, status] = await Promise.all([get("/api/project"), get("/api/state")]);
-new App(project, status);
+new App(project, status, status.pair ? await get("/api/other/project") : null);

@@ -53,10 +53,10 @@ export function actions(app, { bit = null, forcible = false, values = [], addres
   if (!app.readOnly) {
     if (bit) {
       const on = Boolean(app.live.values.get(bit));
-      items.push([`Toggle bit ${bit} (now ${Number(on)})`, () => post("/api/write", { address: bit, value: !on })]);
+      items.push([`Toggle bit ${bit} (now ${Number(on)})`, () => post(`${app.api}/write`, { address: bit, value: !on })]);
     }
     if (bit && forcible) {
-      const force = (state) => () => post("/api/force", { address: bit, state });
+      const force = (state) => () => post(`${app.api}/force`, { address: bit, state });
       items.push([`Force on ${bit}`, force(true)], [`Force off ${bit}`, force(false)]);
       if (app.forces.has(bit)) items.push([`Remove the force of ${bit}`, force(null)]);
     }

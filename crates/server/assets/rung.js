@@ -186,7 +186,7 @@ export class Rung {
   act(part) {
     const { app } = this;
     if (part.instruction.contact && !app.readOnly) {
-      post("/api/write", { address: part.bit, value: app.live.values.get(part.bit) ? 0 : 1 });
+      post(`${app.api}/write`, { address: part.bit, value: app.live.values.get(part.bit) ? 0 : 1 });
     } else this.menu(part);
   }
 
@@ -220,7 +220,7 @@ export class Rung {
       if (focus) part.node.focus({ preventScroll: true });
     };
     const write = () => {
-      if (input.value.trim() !== before) post("/api/write", { address, value: typed(input.value) });
+      if (input.value.trim() !== before) post(`${app.api}/write`, { address, value: typed(input.value) });
     };
     input.addEventListener("keydown", (event) => {
       event.stopPropagation();

@@ -27,6 +27,8 @@ const ASSETS: &[(&str, &str, &str)] = &[
     ("ladder.js", SCRIPT, include_str!("../../assets/ladder.js")),
     ("main.js", SCRIPT, include_str!("../../assets/main.js")),
     ("menu.js", SCRIPT, include_str!("../../assets/menu.js")),
+    ("pair.js", SCRIPT, include_str!("../../assets/pair.js")),
+    ("pane.js", SCRIPT, include_str!("../../assets/pane.js")),
     ("palette.js", SCRIPT, include_str!("../../assets/palette.js")),
     ("run.js", SCRIPT, include_str!("../../assets/run.js")),
     ("rung.js", SCRIPT, include_str!("../../assets/rung.js")),
@@ -35,8 +37,10 @@ const ASSETS: &[(&str, &str, &str)] = &[
     ("theme.js", SCRIPT, include_str!("../../assets/theme.js")),
     ("trend.js", SCRIPT, include_str!("../../assets/trend.js")),
     ("values.js", SCRIPT, include_str!("../../assets/values.js")),
+    ("proof.js", SCRIPT, include_str!("../../assets/proof.js")),
     ("style.css", STYLE, include_str!("../../assets/style.css")),
     ("views.css", STYLE, include_str!("../../assets/views.css")),
+    ("pair.css", STYLE, include_str!("../../assets/pair.css")),
     ("rungs.css", STYLE, render::svg::STYLE),
 ];
 

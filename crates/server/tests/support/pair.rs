@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses what it needs")]
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use analysis::proof::{self, Mapping, Options, Progress, RungFate, choices_of_converted};
@@ -12,7 +12,11 @@ use server::prover::Prover;
 use server::view::{DoMoreProgram, Program, SlcProgram};
 use server::workbench::{DoMore, Pair, Slc, Workbench};
 
-const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+/// The examples of the repository, wherever the crate of the test stands in it.
+fn examples() -> PathBuf {
+    let above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("examples"));
+    above.into_iter().find(|folder| folder.join("README.md").is_file()).expect("the examples are there")
+}
 
 /// An original and what was made of it.
 pub(crate) struct Two {
@@ -25,7 +29,7 @@ pub(crate) struct Two {
 impl Two {
     /// `motor/motor.RSS` and its migration with these texts replaced, each of which must stand in it.
     pub(crate) fn of(example: &str, changes: &[(&str, &str)]) -> Two {
-        let path = Path::new(EXAMPLES).join(example);
+        let path = examples().join(example);
         let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let original = convert::open(&bytes, example, rss::Mode::Permissive).expect("reads");
         let migration = convert::migrate::migrate(&original.main, &[], &Default::default()).expect("migrates");
