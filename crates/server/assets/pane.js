@@ -42,7 +42,7 @@ export class Pane {
 
   /** Shows a rung, or the beginning of a routine. */
   async go(routine, rung = null, byHand = false) {
-    if (routine !== this.routine) await this.show(() => ladder(this.side, this.body, routine, rung, false), routine);
+    if (routine !== this.routine) await this.show(() => ladder(this.side, this.body, routine, null, false), routine);
     if (rung !== null) this.reveal(rung);
     if (byHand) this.turned(routine);
   }

@@ -57,7 +57,7 @@ export function search(app) {
       state.textContent = problem.message;
       return;
     }
-    const busy = ["running", "shortening", "stopping"].includes(now.state);
+    const busy = ["running", "arguing", "shortening", "stopping"].includes(now.state);
     start.hidden = busy;
     stop.hidden = !busy || app.readOnly;
     progress.hidden = !busy;
@@ -65,6 +65,7 @@ export function search(app) {
     state.textContent = {
       idle: "", done: "",
       running: `${count(now.scans)} of ${count(now.of)} scans`,
+      arguing: `${count(now.scans)} of ${count(now.of)} scans; looking for what cannot happen`,
       shortening: "A difference was found; the way to it is being made shorter.",
       stopping: "Stopping…",
       broken: "The search broke off without a result.",

@@ -223,7 +223,7 @@ pub(super) async fn rows(
 /// The search for a difference.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Proof {
-    /// `idle`, `running`, `shortening`, `stopping`, `broken` or `done`.
+    /// `idle`, `running`, `arguing`, `shortening`, `stopping`, `broken` or `done`.
     state: &'static str,
     seed: Option<u64>,
     /// Scans of both so far.
@@ -259,10 +259,11 @@ impl Proof {
             prover::State::Idle => Proof { state: "idle", ..Proof::default() },
             prover::State::Broken => Proof { state: "broken", ..Proof::default() },
             prover::State::Running { progress, seed, scans } => Proof {
-                state: match (progress.is_stopped(), progress.is_shortening()) {
-                    (true, _) => "stopping",
-                    (false, true) => "shortening",
-                    (false, false) => "running",
+                state: match (progress.is_stopped(), progress.is_shortening(), progress.is_arguing()) {
+                    (true, ..) => "stopping",
+                    (false, true, _) => "shortening",
+                    (false, false, true) => "arguing",
+                    (false, false, false) => "running",
                 },
                 seed: Some(seed),
                 scans: progress.scans(),
