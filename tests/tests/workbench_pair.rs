@@ -143,7 +143,7 @@ fn a_search_leads_to_the_difference() {
     open(&browser, &page);
     browser.click("#prove");
     browser.wait_for("document.querySelector('#verdict strong')?.textContent === 'different'");
-    browser.wait_for("document.querySelector('.tape:not([hidden])') && document.querySelector('#play')");
+    browser.wait_for("document.querySelector('.tape').offsetHeight > 0 && document.querySelector('#play')");
     let told = browser.text("#verdict p:nth-of-type(2)");
     let scans: f64 = told.split("after ").nth(1).and_then(|rest| rest.split(' ').next()?.parse().ok()).expect("scans");
     browser.wait_for("document.querySelector('#status').textContent.includes('scan 0 ')");
@@ -170,7 +170,7 @@ fn a_search_leads_to_the_difference() {
     browser.click(".pair-values tbody td .cell");
     browser.wait_for("document.querySelector('.banner.wrong')?.textContent.includes('tape')");
     browser.click("#tape-leave");
-    browser.wait_for("document.querySelector('.tape').hidden");
+    browser.wait_for("document.querySelector('.tape').offsetHeight === 0");
     assert!(browser.complaints().iter().all(|line| line.contains("409")));
 }
 

@@ -93,7 +93,10 @@ pub enum Command {
     /// and the program does not leave the machine. Other addresses must be asked for and then need the token that is
     /// printed.
     #[command(after_help = "Example: rungs serve conveyor.RSS --open\n         \
-        rungs serve conveyor.RSS --plant conveyor_plant.toml --port 8600")]
+        rungs serve conveyor.RSS --plant conveyor_plant.toml --port 8600\n         \
+        rungs serve conveyor.RSS out/conveyor.txt --map out/address-map.csv\n         \
+        rungs serve conveyor.RSS out/conveyor.txt --map out/address-map.csv --replay proof/original.toml\n\n\
+        Exit code 0: served until it was ended; 1: a program that cannot be run; 2: bad use; 3: unreadable. See docs/workbench.md.")]
     Serve(ServeArguments),
     /// Runs scenarios (TOML) and reports every expectation that is not met
     #[command(after_help = "Example: rungs test scenarios/\n         rungs test flash.toml --junit result.xml\n\n\

@@ -101,3 +101,14 @@ fn a_read_only_server_answers_as_described() {
 fn a_server_for_others_wants_its_token_everywhere() {
     conforms("token", "motor/motor.RSS", &["--address", "0.0.0.0"]);
 }
+
+#[test]
+fn two_programs_are_served_as_described() {
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("serve-api-migrated");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rungs"));
+    command.arg("migrate").arg(examples().join("motor/motor.RSS"));
+    let done = command.args(["--to", "domore", "--overwrite", "--out"]).arg(&out).output().expect("migrates");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let [text, map] = ["motor.txt", "address-map.csv"].map(|name| out.join(name).to_string_lossy().into_owned());
+    conforms("pair", "motor/motor.RSS", &[&text, "--map", &map]);
+}
