@@ -610,6 +610,7 @@ fn addresses_decided_at_run_time() {
             "XIC N11:[N7:50]/[N7:51] OTE B3:1/0",
             "XIC B3:2/0 OTL N11:[N7:50]/[N7:51]",
             "XIC B3:2/0 OTE N11:[N7:50]/[N7:51]",
+            "XIC B3:2/0 BSR #B10:0 R6:2 N11:[N7:50]/6 20",
         ],
         Verdict::Condition,
     );

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use convert::migrate::{self, Options, Verdict};
 use domore::choices::{Choice, Choices};
-use ladder::{DataFile, Family, FileType, Image};
+use ladder::{Address, DataFile, Family, FileType, Image, Value};
 use migrate_support::Both;
 use migrate_support::dice::Dice;
 use proptest::prelude::*;
@@ -44,9 +44,24 @@ fn is_mx(family: Family) -> bool {
     shape::is_mx(family) || matches!(family, Family::MicroLogix1200 | Family::MicroLogix1500)
 }
 
+const FLOATS: [f32; 14] = [0.0, 1.0, -1.0, 0.5, -0.5, 1.5, 2.5, -2.5, 0.1, 100.25, 32767.4, 32767.5, -32768.5, 40000.0];
+
+/// Conditions about indexes.
+const REACH: [&str; 2] = ["must stay within", "must lead inside the file"];
+
+/// Conditions that the floats of these programs keep.
+const KEPT: [&str; 4] = [
+    "floats are ordinary numbers of single precision",
+    "a long word becomes the nearest float",
+    "integers and floats compare by value",
+    "the name SQRT of the square root is inferred",
+];
+
 struct Vocabulary {
     dice: Dice,
     family: Family,
+    /// Floats among the words.
+    floats: bool,
 }
 
 impl Vocabulary {
@@ -63,6 +78,9 @@ impl Vocabulary {
     }
 
     fn constant(&mut self) -> String {
+        if self.floats && self.below(3) == 0 {
+            return format!("{:?}", FLOATS[self.dice.below(FLOATS.len() as u64) as usize]);
+        }
         match self.below(3) {
             0 => (self.dice.next() as i16).to_string(),
             1 => self.below(20).to_string(),
@@ -72,6 +90,9 @@ impl Vocabulary {
 
     /// A word that is read or written.
     fn word(&mut self) -> String {
+        if self.floats && self.below(3) == 0 {
+            return format!("F8:{}", self.below(6));
+        }
         match self.below(24) {
             0 => format!("T4:{}.{}", self.dice.below(6), self.dice.pick(&["PRE", "ACC"])),
             1 => format!("C5:{}.{}", self.dice.below(4), self.dice.pick(&["PRE", "ACC"])),
@@ -108,7 +129,7 @@ impl Vocabulary {
     fn short(&mut self) -> String {
         loop {
             let word = self.word();
-            if !word.starts_with('L') {
+            if !word.starts_with(['L', 'F']) {
                 return word;
             }
         }
@@ -289,9 +310,35 @@ fn fill(image: &mut Image, dice: &mut Dice) {
     }
 }
 
+/// Whether a rung is compared: it is exact, or what it states is kept here. An index that leaves its file stops the
+/// original.
+fn holds(rung: &migrate::RungResult, floats: bool) -> bool {
+    let reach = |note: &migrate::marks::Note| REACH.iter().any(|part| note.text.contains(part));
+    let kept = |note: &migrate::marks::Note| floats && KEPT.iter().any(|kept| note.text.starts_with(kept));
+    match rung.verdict {
+        Verdict::Exact => true,
+        Verdict::Condition => rung.notes.iter().all(|note| kept(note) || reach(note)),
+        Verdict::Person => false,
+    }
+}
+
+/// A float that the stated condition excludes.
+fn is_beyond(both: &Both) -> bool {
+    (0..6).any(|element| {
+        let value = both.slc.get(&Address::element(FileType::F, 8, element));
+        matches!(value, Ok(Value::Float(value)) if value != 0.0 && !(1e-30..1e30).contains(&value.abs()))
+    })
+}
+
 /// Runs a program for a while: the mnemonics that were compared, or the first difference.
-fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Result<BTreeSet<String>, String> {
-    let words = |dice| Vocabulary { dice, family };
+fn run(
+    (family, floats): (Family, bool),
+    main: &[u64],
+    sub: &[u64],
+    seed: u64,
+    scans: usize,
+) -> Result<BTreeSet<String>, String> {
+    let words = |dice| Vocabulary { dice, family, floats };
     let mut dice = Dice(seed | 1);
     let (mut main, sub) = (shape::file(main, false, words), shape::file(sub, true, words));
     if dice.below(4) > 0 {
@@ -304,7 +351,7 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
         let Some(mut image) = image(family, &main, &sub) else { return Ok(BTreeSet::new()) };
         fill(&mut image, &mut Dice(seed | 1));
         let Ok(migration) = migrate::migrate(&image, &[], &options) else { return Ok(BTreeSet::new()) };
-        let left: Vec<_> = migration.rungs.iter().filter(|rung| rung.verdict != Verdict::Exact).collect();
+        let left: Vec<_> = migration.rungs.iter().filter(|rung| !holds(rung, floats)).collect();
         if left.is_empty() {
             break (image, migration);
         }
@@ -317,6 +364,7 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
     if main.is_empty() {
         return Ok(BTreeSet::new());
     }
+    let reaches = migration.rungs.iter().any(|rung| rung.verdict == Verdict::Condition);
     // What is exact depends on no reading of Do-more.
     let choices = match READINGS.get(dice.below(READINGS.len() as u64 + 1) as usize) {
         Some(choice) => Choices::default().with(*choice),
@@ -344,6 +392,12 @@ fn run(family: Family, main: &[u64], sub: &[u64], seed: u64, scans: usize) -> Re
         }
         let dt = Duration::from_millis([0, 1, 7, 10, 13, 30, 250, 1000][dice.below(8) as usize]);
         let difference = both.scan(dt);
+        if both.slc.fault().is_some_and(|fault| fault.code != 0x20) && reaches {
+            break;
+        }
+        if floats && is_beyond(&both) {
+            break;
+        }
         let difference = difference.or_else(|| {
             (both.running() != both.other_runs()).then(|| {
                 format!(
@@ -381,7 +435,23 @@ proptest! {
         seed in any::<u64>(),
         scans in 5usize..40,
     ) {
-        if let Err(difference) = run(family, &main, &sub, seed, scans) {
+        if let Err(difference) = run((family, false), &main, &sub, seed, scans) {
+            return Err(TestCaseError::fail(difference));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, max_shrink_iters: 4000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_programs_of_floats_stay_equal(
+        family in proptest::sample::select(vec![Family::Slc503, Family::MicroLogix1100, Family::MicroLogix1400]),
+        main in proptest::collection::vec(any::<u64>(), 1..8),
+        seed in any::<u64>(),
+        scans in 5usize..30,
+    ) {
+        if let Err(difference) = run((family, true), &main, &[], seed, scans) {
             return Err(TestCaseError::fail(difference));
         }
     }
@@ -395,7 +465,8 @@ fn every_instruction_is_compared() {
     for number in 0..600 {
         let main: Vec<u64> = (0..2).map(|_| dice.next()).collect();
         let family = FAMILIES[number % FAMILIES.len()];
-        let found = run(family, &main, &[], dice.next(), 6).unwrap_or_else(|difference| panic!("{difference}"));
+        let found =
+            run((family, false), &main, &[], dice.next(), 6).unwrap_or_else(|difference| panic!("{difference}"));
         compared += usize::from(!found.is_empty());
         seen.extend(found);
     }

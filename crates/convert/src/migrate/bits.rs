@@ -53,6 +53,9 @@ fn ote(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) ->
         bit => {
             e.when(|e| bit.write(e, true));
             e.unless(|e| bit.write(e, false));
+            if !context.needs.clear_found.contains(&bit) {
+                context.needs.clear_found.push(bit);
+            }
         }
     }
     Ok(())

@@ -6,7 +6,7 @@
 use instr::exec::Width;
 use ladder::Instruction;
 
-use super::context::{Context, Converted};
+use super::context::{Context, Converted, Person};
 use super::emit::{Contact, Emitter, Relation};
 use super::marks::Mark;
 use super::operand::operand;
@@ -220,6 +220,9 @@ fn masked_equal(cx: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction
     let long = cx.any_long(&[operands[0], operands[2]]);
     let [source, mask, wanted] = operands;
     let (source, mask, wanted) = (cx.value(source, long)?, cx.value(mask, long)?, cx.value(wanted, long)?);
+    if [&source, &mask, &wanted].iter().any(|value| value.is_float()) {
+        return Err(Person::new(Mark::Operand, "MEQ of floats"));
+    }
     let (left, right) = (source.bit_and(&mask), wanted.bit_and(&mask));
     let (left, right) = (placed(cx, e, &left, 0), placed(cx, e, &right, 1));
     if let Some(contact) = contact(cx, Relation::Equal, &left, &right) {

@@ -12,6 +12,7 @@ use super::emit::Emitter;
 use super::facts::Facts;
 use super::interrupts::Timed;
 use super::marks::{Mark, Note};
+use super::operand::Bit;
 
 /// Why an instruction has no conversion: its rung needs a person.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -86,6 +87,8 @@ pub struct Needs {
     pub now: bool,
     /// Bits that are switched off in the first scan after entering RUN, before all rungs.
     pub clear: BTreeSet<String>,
+    /// The same of bits that are found at run time.
+    pub clear_found: Vec<Bit>,
     /// Bits that are switched on then.
     pub set: BTreeSet<String>,
     /// Minor error bits of S:5 are set by rungs: the end of the scan has to look.

@@ -191,7 +191,15 @@ pub(super) fn looks_at_index(cx: &Context<'_>) -> bool {
             let takes_files = instr::by_mnemonic(name).is_some_and(|known| {
                 matches!(known.category, instr::Category::File | instr::Category::Sequencer | instr::Category::Ascii)
             });
-            !takes_files && super::facts::addresses(one).into_iter().any(|address| address.indexed)
+            let indexed = |operand: usize| {
+                one.operands.get(operand).and_then(Operand::address).is_some_and(|address| address.indexed)
+            };
+            match name {
+                // Beside their file these take a word.
+                "FFL" | "LFL" | "FLL" => indexed(0),
+                "FFU" | "LFU" => indexed(1),
+                _ => !takes_files && super::facts::addresses(one).into_iter().any(|address| address.indexed),
+            }
         })
 }
 

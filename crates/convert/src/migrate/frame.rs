@@ -53,6 +53,13 @@ pub(super) fn initialized(context: &mut Context<'_>) -> String {
 fn prescan(context: &mut Context<'_>, rungs: &mut Vec<Rung>) {
     let clear = std::mem::take(&mut context.needs.clear);
     let set = std::mem::take(&mut context.needs.set);
+    let found = std::mem::take(&mut context.needs.clear_found);
+    if !found.is_empty() {
+        let mut e = Emitter::new();
+        e.and(FIRST_SCAN);
+        found.iter().for_each(|bit| bit.write(&mut e, false));
+        rungs.push(rung(e, "entering RUN: coils that are found at run time off, before the first rung"));
+    }
     let mut outputs: Vec<Instruction> = Vec::new();
     for (first, last) in runs(&clear) {
         outputs.push(match last {

@@ -97,8 +97,8 @@ fn multiply(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted
     if product.fits(Width::Long) {
         let words = a.width == Width::Word && b.width == Width::Word && to.width == Width::Word;
         if words && has_register(cx) {
-            // The register is stored last, but the operands may stand in the destination.
-            let whole = settled(e, &product, &cx.scratch_long(2));
+            // The register is stored last, but the operands may stand in the destination or be the flags.
+            let whole = held(cx, e, &product, 2);
             integer(cx, e, &whole, &Carry::Off, &to);
             register_long(cx, e, &whole);
         } else {

@@ -545,7 +545,8 @@ impl Bit {
     pub fn term(&self) -> String {
         match self {
             Bit::Plain(text) | Bit::Indexed(text) => text.clone(),
-            Bit::InWord { word, bit } => format!("({word} >> ({bit})) & 1"),
+            // The order of & against comparisons is not documented.
+            Bit::InWord { word, bit } => format!("(({word} >> ({bit})) & 1)"),
             Bit::Within { index, bit } => format!("IF({index} < 0, 0, IF({index} > 15, 0, {}))", bit.term()),
         }
     }

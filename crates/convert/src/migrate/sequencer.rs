@@ -129,8 +129,12 @@ fn stepped(
 }
 
 /// Of a long word beside a file of words only the low one counts.
-fn low_word(value: Value) -> Value {
-    if value.is_float() || value.fits(Width::Word) { value } else { wrapped(&value) }
+fn low_word(value: Value) -> Converted<Value> {
+    match value.is_float() {
+        true => Err(Person::new(Mark::Files, "a float beside words of a file")),
+        false if value.fits(Width::Word) => Ok(value),
+        false => Ok(wrapped(&value)),
+    }
 }
 
 /// `N[first + POS]`.
@@ -191,7 +195,7 @@ fn output(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
         let word = settled(e, &word, &cx.scratch_long(2));
-        let mask = low_word(stepped(cx, e, mask, &position, 3)?);
+        let mask = low_word(stepped(cx, e, mask, &position, 3)?)?;
         let (old, target) = if to.address().is_some_and(|address| address.indexed) {
             cx.needs_unconfirmed("a destination decided at run time")?;
             let target = cx.start(to)?;
@@ -227,8 +231,8 @@ fn compare(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted 
     step(cx, e, &control, |cx, e| {
         let word = Value::indexed(entry(&start, &position, &file.to_string())?, Width::Word);
         let word = settled(e, &word, &cx.scratch_long(2));
-        let mask = low_word(stepped(cx, e, mask, &position, 3)?);
-        let source = low_word(stepped(cx, e, source, &position, 4)?);
+        let mask = low_word(stepped(cx, e, mask, &position, 3)?)?;
+        let source = low_word(stepped(cx, e, source, &position, 4)?)?;
         let left = settled(e, &source.bit_and(&mask), &cx.scratch_long(5));
         let right = settled(e, &word.bit_and(&mask), &cx.scratch_long(6));
         e.reset(&found);
@@ -420,10 +424,7 @@ fn push(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
     let stack = Stack::of(cx, i, 1)?;
     cx.needs_unconfirmed("a destination decided at run time")?;
     let source = cx.value(operand(i, 0)?, false)?;
-    if source.is_float() {
-        return Err(Person::new(Mark::Files, "a float put on a stack"));
-    }
-    let source = low_word(source);
+    let source = low_word(source)?;
     let (en, dn) = (stack.control.bit(cx, EN)?, stack.control.bit(cx, DN)?);
     let position = stack.control.position.clone();
     // S:24 gets the POS it found in every scan with power, behind the source, which may be S:24 or indexed by it.

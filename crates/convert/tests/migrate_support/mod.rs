@@ -82,7 +82,9 @@ impl Both {
             engine::Program::compile(&reading.project, &engine::Options { choices, ..engine::Options::default() })
                 .map_err(|refusals| format!("{refusals:#?}\n{text}"))?;
         let domore = engine::Machine::new(program);
-        let program = sim::Program::compile(image, &sim::Options::default());
+        // What lies behind a file is other data there and here: an index that leads out of its file stops the original.
+        let choices = sim::Choices::default().with(sim::Choice::IndirectStaysInFile);
+        let program = sim::Program::compile(image, &sim::Options { choices, ..sim::Options::default() });
         let program = program.map_err(|refusals| format!("the original: {refusals:?}"))?;
         let slc = sim::Machine::new(program);
         let facts = migrate::facts::Facts::of(image);
