@@ -52,6 +52,8 @@ export class Live {
   #listeners = new Set();
   #queued = false;
   #wait = 250;
+  /** Called when the server was started again: its state is a new one. */
+  restarted = () => {};
   /** What was told last. */
   status = null;
   rungs = new Map();
@@ -81,6 +83,12 @@ export class Live {
   }
 
   #told(news) {
+    if (this.status && this.status.server !== news.status.server) {
+      // What was told before was another run.
+      this.rungs.clear();
+      this.values.clear();
+      this.restarted();
+    }
     this.status = news.status;
     for (const [rung, bits] of Object.entries(news.rungs ?? {})) this.rungs.set(rung, bits);
     for (const [address, value] of Object.entries(news.values ?? {})) this.values.set(address, value);

@@ -7,6 +7,12 @@ import { Rung, rem } from "./rung.js";
 /** Rungs asked for at once. */
 const CHUNK = 20;
 
+/** Rungs out of sight that stay drawn: scrolling back a little costs nothing, and a long file does not fill the page. */
+const KEPT = 100;
+
+/** Milliseconds of drawing between two pictures: scrolling stays smooth while rungs appear. */
+const BUDGET = 6;
+
 /** The fewest columns a drawing can have. */
 const NARROWEST = 60;
 
@@ -33,8 +39,11 @@ export async function ladder(app, view, routine, goal, mark = true) {
     el("h2", {}, `${file.title}`, el("span", { class: "description" }, ` ${file.description}`)),
     el("p", { class: "print-only" }, "Rungs that were not on the screen are not printed; `rungs report` prints the whole program."),
     ...rungs);
-  /** Rungs that are drawn. */
+  /** Rungs as the server drew them, those that are in the page, and those that are to be. */
+  const known = new Map();
   const drawn = new Map();
+  const waiting = new Set();
+  const later = new Set();
   const visible = new Set();
   const asked = new Map();
   /** The one instruction that Tab leads to; arrows lead from there to the others. */
@@ -56,15 +65,63 @@ export async function ladder(app, view, routine, goal, mark = true) {
   async function chunk(from) {
     const views = await get(`${app.api}/routines/${routine}/rungs?from=${from}&count=${CHUNK}&width=${width}`);
     for (const one of views) {
-      const rung = new Rung(app, routine, one, rungs[one.rung]);
-      drawn.set(one.rung, rung);
-      rung.paint();
-      if (!current && rung.parts.length) enter(rung.parts[0]);
+      known.set(one.rung, one);
+      later.add(one.rung);
     }
+  }
+
+  function draw(index) {
+    if (drawn.has(index) || !known.has(index)) return;
+    const rung = new Rung(app, routine, known.get(index), rungs[index]);
+    drawn.set(index, rung);
+    rung.paint();
+    if (!current && rung.parts.length) enter(rung.parts[0]);
+  }
+
+  let drawing = 0;
+  function soon(index) {
+    waiting.add(index);
+    drawing ||= requestAnimationFrame(work);
+  }
+
+  /** Draws what came into sight, and then what is beside it, as much as one picture has time for. */
+  function work() {
+    drawing = 0;
+    const end = performance.now() + BUDGET;
+    for (const queue of [waiting, later]) {
+      for (const index of queue) {
+        if (performance.now() > end) break;
+        queue.delete(index);
+        if (visible.has(index) || (queue === later && drawn.size < KEPT)) draw(index);
+      }
+    }
+    if (waiting.size + later.size) drawing = requestAnimationFrame(work);
+    else tidy();
     see();
   }
 
-  function load(index) {
+  /** Takes rungs out of the page that are far away; their places keep their heights. */
+  function tidy() {
+    const size = Number.parseFloat(getComputedStyle(document.documentElement).fontSize);
+    const [first, last] = [Math.min(...visible), Math.max(...visible)];
+    const busy = [document.activeElement, current?.node].map((node) => node?.closest?.(".rung-place"));
+    const away = [...drawn.keys()].filter((index) => !visible.has(index) && !busy.includes(rungs[index]));
+    away.sort((a, b) => Math.max(first - b, b - last) - Math.max(first - a, a - last));
+    const gone = away.slice(0, Math.max(0, away.length - KEPT)).map((index) => [index, rungs[index].offsetHeight]);
+    for (const [index, height] of gone) {
+      rungs[index].style.minHeight = `${height / size}rem`;
+      rungs[index].replaceChildren();
+      drawn.delete(index);
+    }
+  }
+
+  async function load(index) {
+    await fetched(index);
+    draw(index);
+    see();
+  }
+
+  function fetched(index) {
     const from = Math.floor(index / CHUNK) * CHUNK;
     if (!asked.has(from)) {
       asked.set(from, chunk(from).catch((problem) => {
@@ -149,7 +206,8 @@ export async function ladder(app, view, routine, goal, mark = true) {
       const index = Number(entry.target.dataset.rung);
       if (entry.isIntersecting) {
         visible.add(index);
-        load(index).then(() => drawn.get(index)?.paint());
+        if (drawn.has(index)) drawn.get(index).paint();
+        else fetched(index).then(() => soon(index));
       } else visible.delete(index);
     }
     see();
@@ -180,10 +238,12 @@ export async function ladder(app, view, routine, goal, mark = true) {
 
   // Another width has other drawings; the rung on top stays.
   let timer = 0;
-  const resized = new ResizeObserver(() => {
+  const resized = new ResizeObserver(function look() {
     clearTimeout(timer);
     timer = setTimeout(() => {
       if (columns(view) === width) return;
+      // What a person types would go with the drawing.
+      if (view.querySelector("input:focus")) return look();
       const top = view.getBoundingClientRect().top;
       const at = rungs.findIndex((rung) => rung.getBoundingClientRect().bottom > Math.max(top, 0));
       app.show(() => ladder(app, view, routine, at > 0 ? at : null, false));
@@ -192,6 +252,7 @@ export async function ladder(app, view, routine, goal, mark = true) {
   resized.observe(view);
   return () => {
     clearTimeout(timer);
+    cancelAnimationFrame(drawing);
     resized.disconnect();
     watcher.disconnect();
     view.removeEventListener("keydown", key);

@@ -33,6 +33,8 @@ const GROUPS = {
   "do-more": { program: "Code-Blocks", data: "Memory", forces: "Forces", watch: "Data View", trends: "Trend View" },
 };
 
+const RESTARTED = "The controller was started again, with the data of the project. What was not saved is gone: values, forces, history, snapshots, recordings.";
+
 class App {
   constructor(project, status, other) {
     this.project = project;
@@ -42,6 +44,11 @@ class App {
     this.other = other && new Side(this, other);
     this.readOnly = status.read_only;
     this.live = new Live();
+    this.live.restarted = () => this.restarted();
+    if (sessionStorage.getItem("rungs-restarted")) {
+      sessionStorage.removeItem("rungs-restarted");
+      tell(RESTARTED, "wrong");
+    }
     this.key = `rungs-watch:${project.file}`;
     this.watched = this.#kept();
     this.stop = null;
@@ -56,6 +63,17 @@ class App {
     byId("tree-button").addEventListener("click", () => this.drawer());
     byId("tree").addEventListener("click", (event) => event.target.closest("a") && this.drawer(false));
     this.follow();
+  }
+
+  /** The server was started again: with the same program the page goes on, with another one it begins anew. */
+  async restarted() {
+    const project = await get("/api/project").catch(() => null);
+    if (JSON.stringify(project) === JSON.stringify(this.project)) {
+      tell(RESTARTED, "wrong");
+      return;
+    }
+    sessionStorage.setItem("rungs-restarted", "1");
+    location.reload();
   }
 
   /** Installed forces by address. */

@@ -124,6 +124,7 @@ fn what_is_recorded_replays_with_the_same_result() {
     toggle(&browser, "I:0.0/0");
     steps(&browser, 3);
     browser.click("#more");
+    browser.wait_for("document.querySelector('#expect')");
     browser.click("#expect");
     browser.wait_for("document.querySelector('#status').textContent.includes('scan 7 ')");
     browser.click("#record-stop");

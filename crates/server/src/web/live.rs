@@ -4,7 +4,7 @@
 //! last. Nothing queues up: a browser that is slow gets the newest frame when it is ready for one, and one that
 //! comes back says again what it shows and is told everything.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use tokio::sync::{Semaphore, watch};
-use tokio::time::{Instant, interval};
+use tokio::time::{Instant, interval, timeout};
 
 use super::asked::{List, Object};
 use super::problem::Problem;
@@ -84,6 +84,21 @@ struct Known {
     rows: BTreeMap<u32, [serde_json::Value; 2]>,
 }
 
+impl Known {
+    /// Forgets what is not shown any more: the browser does not follow it, and is told when it shows it again.
+    fn keep(&mut self, see: &See) {
+        fn all<T: Ord + Clone>(list: &[T]) -> BTreeSet<T> {
+            list.iter().cloned().collect()
+        }
+        let (rungs, other) = (all(see.rungs.as_slice()), all(see.other_rungs.as_slice()));
+        let (values, rows) = (all(see.values.as_slice()), all(see.rows.as_slice()));
+        self.rungs.retain(|rung, _| rungs.contains(rung));
+        self.other_rungs.retain(|rung, _| other.contains(rung));
+        self.values.retain(|address, _| values.contains(address));
+        self.rows.retain(|row, _| rows.contains(row));
+    }
+}
+
 pub(super) async fn live(
     State(served): State<Served>,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
@@ -126,7 +141,7 @@ async fn follow(
                 match message {
                     Some(Ok(Message::Text(text))) => match serde_json::from_str::<Object<See>>(&text) {
                         Ok(Object(asked)) => {
-                            known = Known::default();
+                            known.keep(&asked);
                             see = asked;
                             frames.mark_changed();
                         }
@@ -164,7 +179,11 @@ async fn part(socket: &mut WebSocket, mut why: String) -> Result<(), axum::Error
     while why.len() > 120 {
         why.pop();
     }
-    socket.send(Message::Close(Some(CloseFrame { code: close_code::POLICY, reason: why.into() }))).await
+    socket.send(Message::Close(Some(CloseFrame { code: close_code::POLICY, reason: why.into() }))).await?;
+    // What still comes is read for a moment: a connection with unread bytes is reset, and the reason lost.
+    let rest = async { while let Some(Ok(_)) = socket.recv().await {} };
+    let _ = timeout(Duration::from_secs(1), rest).await;
+    Ok(())
 }
 
 fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String {
