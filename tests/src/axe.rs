@@ -46,21 +46,21 @@ fn source() -> &'static str {
     })
 }
 
-/// What axe-core finds wrong with the page as it stands.
+/// What axe-core finds wrong with the page as it stands; `touch`: also controls too small for a finger.
 ///
 /// # Panics
 /// When it does not run.
 #[must_use]
-pub fn findings(browser: &Browser) -> Vec<Finding> {
+pub fn findings(browser: &Browser, touch: bool) -> Vec<Finding> {
     if !browser.is("window.axe") {
         // Where a page defines modules of its own, the checker would hide in them.
         browser.run(&format!("const module = undefined, define = undefined; {}; return 0", source()));
     }
-    let found = browser.run(
-        "return axe.run(document, {rules: {'target-size': {enabled: true}}, resultTypes: ['violations']}).then(result => \
+    let found = browser.run(&format!(
+        "return axe.run(document, {{rules: {{'target-size': {{enabled: {touch}}}}}, resultTypes: ['violations']}}).then(result => \
          result.violations.map(one => [one.impact, one.id, one.help, one.nodes.map(node => node.target.join(' ') + ' ' + \
          node.any.concat(node.all, node.none).map(check => check.message).join('; '))]))",
-    );
+    ));
     let rows = found.as_array().unwrap_or_else(|| panic!("axe-core answered {found}"));
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let finding = |row: &Value| {
@@ -77,8 +77,8 @@ pub fn findings(browser: &Browser) -> Vec<Finding> {
 ///
 /// # Panics
 /// When something serious is found.
-pub fn check(browser: &Browser, page: &str) {
-    let all = findings(browser);
+pub fn check(browser: &Browser, page: &str, touch: bool) {
+    let all = findings(browser, touch);
     let lines = |serious: bool| -> Vec<String> {
         let some = all.iter().filter(|finding| finding.is_serious() == serious);
         some.map(|it| format!("{page}: {} {}: {}", it.impact, it.rule, it.text)).collect()

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use analysis::diff::{self, Difference};
 use ladder::{Comment, CommentOwner, Project};
 use report::diff::{Comparison, Shown, Side};
+use rungs_tests::axe;
 use rungs_tests::browser::Browser;
 use rungs_tests::corpus;
 
@@ -145,6 +146,19 @@ fn three_widths_show_all() {
         let beside = "(p => p.children[0].offsetTop === p.children[1].offsetTop)(document.querySelector('.pair'))";
         assert_eq!(browser.is(beside), width > 1100, "{name}");
         browser.screenshot(&format!("diff_{name}"));
+    }
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn a_checker_of_accessibility_finds_nothing_serious() {
+    let Some(browser) = Browser::start() else { return };
+    let old = example("batch/batch.RSS");
+    let path = page(&old, &edited(&old, 0, 2, 1), "diff_accessible");
+    for (dark, theme) in [(false, "light"), (true, "dark")] {
+        browser.dark(dark);
+        browser.open(&path);
+        axe::check(&browser, &format!("difference, {theme}"), false);
     }
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use report::{Options, Source};
+use rungs_tests::axe;
 use rungs_tests::browser::{Browser, key};
 use rungs_tests::corpus;
 
@@ -284,5 +285,17 @@ fn a_large_project_opens_and_searches_fast() {
     browser.back();
     browser.wait_for("location.hash === '#r-6-40'");
     assert_in_sight(&browser, "r-6-40");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn a_checker_of_accessibility_finds_nothing_serious() {
+    let Some(browser) = Browser::start() else { return };
+    let path = page(&example("motor/motor.RSS"), "motor_accessible");
+    for (dark, theme) in [(false, "light"), (true, "dark")] {
+        browser.dark(dark);
+        browser.open(&path);
+        axe::check(&browser, &format!("report, {theme}"), false);
+    }
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }

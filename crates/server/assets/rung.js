@@ -19,6 +19,32 @@ function draw(name, attributes) {
 /** Units of a drawing are sixteenths of the size of text, so that drawings grow with it. */
 export const rem = (units) => `${units / 16}rem`;
 
+/**
+ * The rectangle around parts of a drawing, from what they say of themselves: left, top, right, bottom. The browser would lay
+ * out everything to answer.
+ */
+function extent(nodes) {
+  const [xs, ys] = [[], []];
+  for (const node of nodes) {
+    const number = (name) => Number(node.getAttribute(name));
+    if (node.localName === "text") {
+      xs.push(number("x"), number("x") + number("textLength"));
+      ys.push(number("y") - 12, number("y") + 4);
+    } else if (node.localName === "rect" && !node.classList.contains("bar")) {
+      xs.push(number("x"), number("x") + number("width"));
+      ys.push(number("y"), number("y") + number("height"));
+    } else if (node.localName === "path") {
+      for (const [, command, rest] of node.getAttribute("d").matchAll(/([MLHVC])([^MLHVC]*)/g)) {
+        const numbers = rest.trim().split(/[\s,]+/).map(Number);
+        if (command === "H") xs.push(...numbers);
+        else if (command === "V") ys.push(...numbers);
+        else numbers.forEach((value, at) => (at % 2 ? ys : xs).push(value));
+      }
+    }
+  }
+  return xs.length && ys.length ? [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)] : null;
+}
+
 /** What a word in a box can be the address of. */
 const isAddress = (text) => /^[A-Za-z_$#][\w$#:./[\]-]*$/.test(text ?? "");
 
@@ -47,11 +73,11 @@ export class Rung {
     this.parts = view.instructions.map((instruction, number) => this.#part(picture, instruction, number));
     section.replaceChildren(picture);
     section.style.minHeight = "";
-    this.#marks();
   }
 
   #part(picture, instruction, number) {
     const node = picture.querySelector(`g[data-i="${number}"]`) ?? el("span");
+    this.#marks(node);
     const values = instruction.values.map(({ address, operand, instead }) => {
       const texts = [...node.querySelectorAll(`text.${instead ? "operand" : "value"}[data-o="${operand}"]`)];
       for (const text of texts) {
@@ -91,22 +117,18 @@ export class Rung {
   }
 
   /** What is hit between the strokes of an instruction, and the marks of what changed. */
-  #marks() {
-    const boxes = this.parts.map(({ node }) => node.getBBox?.());
-    this.parts.forEach(({ node }, number) => {
-      const box = boxes[number];
-      if (!box) return;
-      // A finger needs some room.
-      const [x, y] = [Math.max(2, (32 - box.width) / 2), Math.max(2, (32 - box.height) / 2)];
-      const hit = draw("rect", { class: "hit", x: box.x - x, y: box.y - y, width: box.width + 2 * x, height: box.height + 2 * y });
-      const sign = node.querySelector(".sign, .frame");
-      const d = sign?.getAttribute("d").match(/-?\d+(\.\d+)?/g)?.map(Number) ?? [];
-      node.prepend(hit);
-      if (!sign || d.length < 2) return;
-      const at = sign.getBBox();
-      const [right, top] = [at.x + at.width + 2, at.y - 2];
-      node.append(draw("path", { class: "rise", d: `M${right} ${top + 7}h9l-4.5 -8z` }), draw("path", { class: "fall", d: `M${right} ${top - 1}h9l-4.5 8z` }));
-    });
+  #marks(node) {
+    const box = extent([...node.children]);
+    if (!box) return;
+    const [left, top, right, bottom] = box;
+    // A finger needs some room.
+    const [x, y] = [Math.max(2, (32 - right + left) / 2), Math.max(2, (32 - bottom + top) / 2)];
+    node.prepend(draw("rect", { class: "hit", x: left - x, y: top - y, width: right - left + 2 * x, height: bottom - top + 2 * y }));
+    const sign = node.querySelector(":scope > .sign, :scope > .frame");
+    const at = sign && extent([sign]);
+    if (!at) return;
+    const [mark, line] = [at[2] + 2, at[1] - 2];
+    node.append(draw("path", { class: "rise", d: `M${mark} ${line + 7}h9l-4.5 -8z` }), draw("path", { class: "fall", d: `M${mark} ${line - 1}h9l-4.5 8z` }));
   }
 
   /** What the live connection must tell for this rung. */

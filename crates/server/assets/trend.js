@@ -100,7 +100,8 @@ export function trend(app, view) {
     const start = end - span;
     const scale = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
     const x = (seconds) => ((seconds - start) / span) * width;
-    context.strokeStyle = context.fillStyle = colour("--faint");
+    context.strokeStyle = colour("--line");
+    context.fillStyle = colour("--faint");
     context.font = `${12 * scale}px sans-serif`;
     context.lineWidth = 1;
     for (let step = 0; step <= 5; step += 1) {
@@ -112,6 +113,7 @@ export function trend(app, view) {
       if (seconds >= 0) context.fillText(time(seconds), Math.min(x(seconds) + 3, width - 60), height - 4);
     }
     const lane = (height - 18) / Math.max(traces.length, 1);
+    for (let index = 1; index < traces.length; index += 1) context.strokeRect(0, Math.round(index * lane), width, 0);
     traces.forEach((trace, index) => {
       const [top, bottom] = [index * lane + 6, (index + 1) * lane - 6];
       const seen = trace.points.filter((point, at) => point[1] >= start || (trace.points[at + 1]?.[1] ?? Infinity) >= start);

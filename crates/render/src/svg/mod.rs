@@ -147,15 +147,24 @@ impl Svg<'_> {
         }
         let number = format!("Rung {}", scene.number);
         let label = if self.options.label.is_empty() { &number } else { self.options.label };
+        // With links in it, it is no picture to those who hear it: they could not follow them.
+        let mut inside = Svg { out: String::with_capacity(self.out.capacity()), options: self.options };
+        inside.content(scene, figure);
+        let role = if inside.out.contains("<a href=") { "group" } else { "img" };
         self.put(format_args!(
-            " width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\" xml:space=\"preserve\">",
+            " width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" role=\"{role}\" aria-label=\"{}\" xml:space=\"preserve\">",
             escape(label)
         ));
         if self.options.standalone {
             self.put(format_args!("<style>{STYLE}</style>"));
             self.put(format_args!("<rect class=\"paper\" width=\"{width}\" height=\"{height}\"/>"));
         }
-        // Backgrounds, then wires, then what stands on them.
+        self.out.push_str(&inside.out);
+        self.out.push_str("</svg>");
+    }
+
+    /// Backgrounds, then wires, then what stands on them.
+    fn content(&mut self, scene: &Scene, figure: &Figure) {
         let behind = figure.rung.iter().take_while(|ink| matches!(ink, Ink::Fill(..))).count();
         let (backgrounds, rest) = figure.rung.split_at(behind);
         backgrounds.iter().for_each(|ink| self.ink(ink));
@@ -164,7 +173,6 @@ impl Svg<'_> {
         for group in &figure.instructions {
             self.group(group, scene.instructions.iter().find(|spot| spot.index == group.index));
         }
-        self.out.push_str("</svg>");
     }
 
     fn wires(&mut self, scene: &Scene, figure: &Figure) {

@@ -196,7 +196,7 @@ fn summary(comparison: &Comparison<'_>, out: &mut dyn Write) -> io::Result<()> {
     let (difference, shown) = (comparison.difference, comparison.shown);
     out.write_all(
         b"<div class=wide><table class=sum><thead><tr><th>Section<th class=n>Changed<th class=n>Inserted<th class=n>Deleted\
-          <th class=n>Moved<th><tbody>\n",
+          <th class=n>Moved<th>Remark<tbody>\n",
     )?;
     let changes = |changes: &[Change]| tally(changes.iter().map(Change::kind));
     let documentation =
