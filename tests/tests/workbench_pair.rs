@@ -5,6 +5,7 @@ mod two;
 
 use std::net::SocketAddr;
 
+use rungs_tests::axe;
 use rungs_tests::browser::Browser;
 use server::workbench::Workbench;
 use server::{Access, engine};
@@ -162,6 +163,12 @@ fn a_search_leads_to_the_difference() {
         "{first}.classList.contains('differs') && {first}.querySelector('.mark').textContent === '≠'"
     ));
     browser.screenshot("workbench-pair-difference");
+    for dark in [false, true] {
+        browser.dark(dark);
+        axe::check(&browser, "a difference");
+    }
+    browser.screenshot("workbench-pair-dark");
+    browser.dark(false);
     browser.click("#difference-rung");
     browser.wait_for("document.querySelectorAll('.pane .goal').length === 2");
     // Back on the tape, both are equal again; nothing is changed by hand meanwhile.
@@ -190,6 +197,7 @@ fn a_search_that_finds_nothing_says_what_it_covered() {
     assert!(browser.text("#verdict pre").contains("not exercised by any run"));
     browser.run("document.querySelector('#verdict').scrollIntoView()");
     browser.screenshot("workbench-pair-verdict");
+    axe::check(&browser, "a verdict");
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
@@ -216,6 +224,7 @@ fn both_fit_three_widths() {
         );
         browser.run("document.querySelector('.pair-values').scrollIntoView()");
         browser.screenshot(&format!("workbench-pair-values-{width}"));
+        axe::check(&browser, &format!("two programs at {width}"));
     }
     browser.resize(1280, 900);
     browser.run("document.documentElement.style.fontSize = '200%'");

@@ -149,7 +149,7 @@ export async function pair(app, view) {
   const [searching, stopSearch] = search(app);
   const [taped, stopTape] = tape(app);
   const [table, stopTable] = values(app, rows);
-  const [told, stopTold] = differences(app, a);
+  const [told, stopTold] = differences(app, a, rows);
   const doubts = [...found.incomparable, ...found.unmapped.map(([address, why]) => `${address}: ${why}`)];
   view.replaceChildren(el("h2", { class: "visually-hidden" }, "Side by side"), told, taped,
     doubts.length ? el("details", { class: "doubts" }, el("summary", {}, `${doubts.length} ${doubts.length === 1 ? "thing" : "things"} cannot be compared: no difference would show there`), el("ul", {}, doubts.map((one) => el("li", {}, one)))) : "",
@@ -170,7 +170,9 @@ export async function pair(app, view) {
 }
 
 /** What differs, since when, and what is done about it. */
-function differences(app, pane) {
+function differences(app, pane, rows) {
+  const compared = rows.filter((row) => row.compared).length;
+  const among = compared === rows.length ? "" : ` among the ${compared} of ${rows.length} values that are compared`;
   const text = el("p", { id: "difference", class: "difference" });
   const stops = el("input", { type: "checkbox", id: "stop-at-difference", disabled: app.readOnly, on: { change: () => control({ do: "stop-at-difference", on: stops.checked }) } });
   const writer = async () => {
@@ -190,7 +192,7 @@ function differences(app, pane) {
     const first = now.first;
     const parts = [];
     if (first) parts.push(`≠ First difference in scan ${first.scan} (${time(first.time)}): ${first.what}.`);
-    else parts.push(scans ? `No difference in the ${scans} ${scans === 1 ? "scan" : "scans"} so far.` : "Nothing has been scanned yet.");
+    else parts.push(scans ? `No difference in the ${scans} ${scans === 1 ? "scan" : "scans"} so far${among}.` : "Nothing has been scanned yet.");
     if (now.differences) parts.push(`${now.differences} ${now.differences === 1 ? "value differs" : "values differ"} now.`);
     else if (first) parts.push(scans < first.scan ? "" : "No value differs now.");
     if (now.left_conditions) parts.push("The original stopped where a stated condition of the conversion is not kept: what follows is no difference.");

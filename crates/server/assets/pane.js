@@ -7,7 +7,8 @@ import { ladder } from "./ladder.js";
 export class Pane {
   #stop = null;
   #showing = null;
-  /** Labels above rungs, by rung. */
+  /** Sections of rungs and the labels above them, by rung. */
+  sections = [];
   labels = [];
 
   constructor(side, title, links, beyond) {
@@ -15,6 +16,7 @@ export class Pane {
     /** Per `routine:rung` the places that belong to it in the other program. */
     this.links = links;
     this.beyond = beyond;
+    this.title = title;
     this.body = el("div", { class: "pane-body", tabIndex: 0, role: "region", ariaLabel: `Ladder of ${side.project.file}` });
     this.choose = el("select", { ariaLabel: `Routine of ${side.project.file}`, on: { change: () => this.go(Number(this.choose.value), null, true) } },
       side.project.routines.map((one) => el("option", { value: one.number }, one.title)));
@@ -23,7 +25,12 @@ export class Pane {
     this.routine = null;
     /** The rung that shall stay in sight while others are drawn. */
     this.wanted = null;
-    this.resized = new ResizeObserver(() => this.changed());
+    /** Heights of labels and rungs, as the browser tells them: asking for all of them would lay out the page each time. */
+    this.heights = new Map();
+    this.resized = new ResizeObserver((entries) => {
+      for (const { target, borderBoxSize } of entries) this.heights.set(target, borderBoxSize[0].blockSize);
+      this.changed();
+    });
     // What this program shows, the page shows in this pane.
     side.pane = this;
   }
@@ -52,6 +59,8 @@ export class Pane {
     this.#stop?.();
     this.#stop = null;
     this.resized.disconnect();
+    this.heights.clear();
+    this.sections = [];
     const mine = (this.#showing = Symbol("view"));
     this.routine = routine;
     this.choose.value = String(routine);
@@ -64,20 +73,20 @@ export class Pane {
     this.#label();
   }
 
-  get rungs() {
-    return [...this.body.querySelectorAll(":scope > .rung-place")];
-  }
-
   #label() {
-    const rungs = this.rungs;
+    const { side, title } = this;
+    const rungs = [...this.body.querySelectorAll(":scope > .rung-place")];
+    this.sections = rungs;
     this.labels = rungs.map((section, index) => {
       const to = this.links.get(`${this.routine}:${index}`) ?? [];
       const last = index === rungs.length - 1;
       const lead = to.map(([routine, rung]) => button(this.beyond.name(routine, rung), "Show it in the other program", () => this.chosen([this.routine, index], [routine, rung]), { class: "link" }));
+      section.ariaLabel = `${title}, rung ${index + (side.project.dialect === "do-more" ? 1 : 0)}`;
       const label = el("div", { class: "pair-label" }, lead.length || (last && this.beyond.original) ? lead : this.beyond.lonely);
       section.before(label);
       section.addEventListener("click", () => this.chosen([this.routine, index], to[0] ?? null));
       this.resized.observe(section);
+      this.resized.observe(label);
       return label;
     });
     this.changed();
@@ -85,7 +94,7 @@ export class Pane {
 
   /** Marks a rung as the one looked at and brings it into sight; `quietly`: scrolls only where it is out of sight. */
   reveal(rung, quietly = false) {
-    const section = this.rungs[rung];
+    const section = this.sections[rung];
     this.body.querySelectorAll(".goal").forEach((one) => one.classList.remove("goal"));
     if (!section) return;
     section.classList.add("goal");
@@ -96,7 +105,7 @@ export class Pane {
 
   /** Scrolls to the rung that is wanted. */
   reach(quietly = false) {
-    const [section, rung] = [this.rungs[this.wanted], this.wanted];
+    const [section, rung] = [this.sections[this.wanted], this.wanted];
     if (!section) return;
     const label = this.labels[rung] ?? section;
     const top = label.getBoundingClientRect().top - this.body.getBoundingClientRect().top + this.body.scrollTop;
@@ -122,7 +131,7 @@ export function level(a, b) {
     queued = false;
     const [left, right] = [a.node.getBoundingClientRect(), b.node.getBoundingClientRect()];
     const beside = Math.abs(left.top - right.top) < 2 && left.width > 0 && right.width > 0;
-    const heights = (pane) => pane.rungs.map((rung, index) => (pane.labels[index]?.offsetHeight ?? 0) + rung.offsetHeight);
+    const heights = (pane) => pane.sections.map((rung, index) => (pane.heights.get(pane.labels[index]) ?? 0) + (pane.heights.get(rung) ?? 0));
     const [x, y] = [heights(a), heights(b)];
     const room = [new Map(), new Map()];
     const at = [[0, 0], [0, 0]];
