@@ -295,7 +295,7 @@ fn a_checker_of_accessibility_finds_nothing_serious() {
     for (dark, theme) in [(false, "light"), (true, "dark")] {
         browser.dark(dark);
         browser.open(&path);
-        axe::check(&browser, &format!("report, {theme}"), false);
+        axe::check_document(&browser, &format!("report, {theme}"));
     }
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }

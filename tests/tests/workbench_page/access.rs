@@ -55,47 +55,47 @@ fn a_checker_finds_nothing_serious_in_any_view_light_or_dark() {
         let theme = if dark { "dark" } else { "light" };
         for view in VIEWS {
             ready(&browser, &page, view);
-            axe::check(&browser, &format!("{view}, {theme}"), true);
+            axe::check(&browser, &format!("{view}, {theme}"));
         }
         show(&browser, &page, "ladder/2");
         browser.wait_for("document.querySelector('svg.rung g.i')");
         browser.run("document.querySelector('svg.rung g.i').focus()");
         browser.keys("m");
         browser.wait_for("document.querySelector('#menu').matches(':popover-open')");
-        axe::check(&browser, &format!("menu, {theme}"), true);
+        axe::check(&browser, &format!("menu, {theme}"));
         browser.keys(key::ESCAPE);
         browser.keys("x");
         browser.wait_for("!document.querySelector('#detail').hidden");
-        axe::check(&browser, &format!("cross reference, {theme}"), true);
+        axe::check(&browser, &format!("cross reference, {theme}"));
         browser.keys(key::ESCAPE);
         browser.run("document.querySelector('#view').focus()");
         browser.keys("?");
         browser.wait_for("document.querySelector('#help').open");
-        axe::check(&browser, &format!("help, {theme}"), true);
+        axe::check(&browser, &format!("help, {theme}"));
         browser.keys(key::ESCAPE);
         browser.click("#search-button");
         browser.keys("MOTOR");
         browser.wait_for("document.querySelectorAll('#palette li').length > 1");
-        axe::check(&browser, &format!("search, {theme}"), true);
+        axe::check(&browser, &format!("search, {theme}"));
         browser.keys(key::ESCAPE);
         show(&browser, &page, "data/T4");
         browser.click(".cell[data-address='T4:0.PRE']");
         browser.wait_for("document.querySelector('#ask').open");
-        axe::check(&browser, &format!("a value, {theme}"), true);
+        axe::check(&browser, &format!("a value, {theme}"));
         browser.keys(key::ESCAPE);
     }
     // The fault screen, and what a person sees of a recording that has ended.
     show(&browser, &page, "session");
     browser.click("#record-stop");
     browser.wait_for("document.querySelector('#view pre').textContent");
-    axe::check(&browser, "recording", true);
+    axe::check(&browser, "recording");
     api(&browser, "write", "{address: 'T4:0.PRE', value: -5}");
     api(&browser, "control", "{do: 'scan', count: 2}");
     for dark in [false, true] {
         browser.dark(dark);
         show(&browser, &page, "fault");
         browser.wait_for("document.querySelector('#view svg.rung')");
-        axe::check(&browser, "fault", true);
+        axe::check(&browser, "fault");
     }
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
