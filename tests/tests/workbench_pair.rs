@@ -165,7 +165,7 @@ fn a_search_leads_to_the_difference() {
     browser.screenshot("workbench-pair-difference");
     for dark in [false, true] {
         browser.dark(dark);
-        axe::check(&browser, "a difference");
+        axe::check(&browser, "a difference", true);
     }
     browser.screenshot("workbench-pair-dark");
     browser.dark(false);
@@ -197,7 +197,7 @@ fn a_search_that_finds_nothing_says_what_it_covered() {
     assert!(browser.text("#verdict pre").contains("not exercised by any run"));
     browser.run("document.querySelector('#verdict').scrollIntoView()");
     browser.screenshot("workbench-pair-verdict");
-    axe::check(&browser, "a verdict");
+    axe::check(&browser, "a verdict", true);
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
@@ -224,7 +224,7 @@ fn both_fit_three_widths() {
         );
         browser.run("document.querySelector('.pair-values').scrollIntoView()");
         browser.screenshot(&format!("workbench-pair-values-{width}"));
-        axe::check(&browser, &format!("two programs at {width}"));
+        axe::check(&browser, &format!("two programs at {width}"), true);
     }
     browser.resize(1280, 900);
     browser.run("document.documentElement.style.fontSize = '200%'");
@@ -243,5 +243,42 @@ fn who_may_only_look_sees_both() {
         !browser
             .is("document.querySelector('#prove') || document.querySelector('.pair-values .cell:not(output):enabled')")
     );
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+/// A scenario is stepped through on one program as well, in every view.
+#[test]
+fn one_program_plays_a_tape_too() {
+    let Some(browser) = Browser::start() else { return };
+    let two = Two::of("motor/motor.RSS", &[]);
+    let program = sim::Program::compile(&two.original.main, &sim::Options::default()).expect("runs");
+    let machine = server::workbench::Slc::new(sim::Machine::new(program), &two.original.main);
+    let mut bench = Workbench::new(Box::new(machine));
+    let text =
+        "name = \"start\"\nprogram = \"motor.RSS\"\nscan = \"10ms\"\n[[step]]\nset = { \"I:0.0/1\" = 1 }\nscans = 4\n";
+    let tape = server::workbench::Tape::read(text, bench.initial()).expect("reads");
+    bench.play(tape).expect("plays");
+    let view = server::view::SlcProgram::new("motor.RSS".to_owned(), two.original, Vec::new());
+    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
+    std::thread::spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+        runtime.block_on(async {
+            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
+            told.send(listener.local_addr().expect("bound")).expect("the test waits");
+            let engine = engine::start(bench).expect("a thread");
+            server::serve(listener, engine, std::sync::Arc::new(view), Access::default(), std::future::pending()).await
+        })
+    });
+    let page = format!("http://{}/", address.recv().expect("the server starts"));
+    browser.go(&format!("{page}#points"));
+    browser.wait_for("document.querySelector('.tape')?.offsetHeight > 0");
+    browser.click("#tape-step");
+    browser.wait_for("document.querySelector('.tape').textContent.includes('scan 1 of 4')");
+    browser.click("#tape-end");
+    browser.wait_for("document.querySelector('#banners').textContent.includes('the tape has ended')");
+    browser.click("#tape-start");
+    browser.wait_for("document.querySelector('.tape').textContent.includes('scan 0 of 4')");
+    browser.click("#tape-leave");
+    browser.wait_for("document.querySelector('.tape').offsetHeight === 0");
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }

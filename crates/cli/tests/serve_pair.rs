@@ -87,6 +87,7 @@ fn what_cannot_be_served_together_is_told() {
     let cases: &[(&[&str], i32, &str)] = &[
         (&[&first, &text], 2, "--map is needed"),
         (&[&first, "--map", &map], 2, "<OTHER>"),
+        (&[&first, &out.to_string_lossy(), "--map", &map], 2, "is a folder"),
         (&[&text, &first, "--map", &map], 2, "the original must be an SLC 500"),
         (&[&first, &path("nothing.txt"), "--map", &map], 3, "nothing.txt"),
         (&[&first, &text, "--map", &path("nothing.csv")], 3, "nothing.csv"),

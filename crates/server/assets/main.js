@@ -7,6 +7,7 @@ import { fault } from "./fault.js";
 import { help } from "./help.js";
 import { ladder } from "./ladder.js";
 import { Side, pair } from "./pair.js";
+import { tape } from "./proof.js";
 import { palette } from "./palette.js";
 import { session } from "./session.js";
 import { toolbar } from "./run.js";
@@ -56,6 +57,7 @@ class App {
     byId("title").title = project.controller;
     this.tree();
     toolbar(this);
+    byId("banners").after(tape(this));
     palette(this);
     help(this);
     addEventListener("hashchange", () => this.follow());

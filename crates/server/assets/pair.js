@@ -4,7 +4,7 @@ import { control, get, post } from "./api.js";
 import { open } from "./detail.js";
 import { button, el, time } from "./dom.js";
 import { Pane, level } from "./pane.js";
-import { search, tape, toDifference } from "./proof.js";
+import { search, toDifference } from "./proof.js";
 import { shown, typed } from "./values.js";
 
 /** Rows of the table at once. */
@@ -147,11 +147,10 @@ export async function pair(app, view) {
     };
   }
   const [searching, stopSearch] = search(app);
-  const [taped, stopTape] = tape(app);
   const [table, stopTable] = values(app, rows);
   const [told, stopTold] = differences(app, a, rows);
   const doubts = [...found.incomparable, ...found.unmapped.map(([address, why]) => `${address}: ${why}`)];
-  view.replaceChildren(el("h2", { class: "visually-hidden" }, "Side by side"), told, taped,
+  view.replaceChildren(el("h2", { class: "visually-hidden" }, "Side by side"), told,
     doubts.length ? el("details", { class: "doubts" }, el("summary", {}, `${doubts.length} ${doubts.length === 1 ? "thing" : "things"} cannot be compared: no difference would show there`), el("ul", {}, doubts.map((one) => el("li", {}, one)))) : "",
     el("div", { class: "panes" }, a.node, b.node), searching, table);
   const [side, routine, rung] = location.hash.slice(1).split("/").slice(1);
@@ -163,7 +162,7 @@ export async function pair(app, view) {
   const start = rung === undefined && (from.get(`${a.routine}:0`) ?? [])[0];
   if (start) a.chosen([a.routine, 0], start);
   return () => {
-    for (const end of [stopSearch, stopTape, stopTable, stopTold, unlevel]) end();
+    for (const end of [stopSearch, stopTable, stopTold, unlevel]) end();
     a.close();
     b.close();
   };

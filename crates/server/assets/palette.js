@@ -36,20 +36,29 @@ export function palette(app) {
       show(places(""));
       return;
     }
-    const found = await get(`/api/search?q=${encodeURIComponent(text)}`).catch((problem) => ({ named: null, hits: [], left_out: 0, problem: problem.message }));
+    // Of two programs side by side both are searched.
+    const sides = app.other ? [app, app.other] : [app];
+    const all = await Promise.all(sides.map((side) => get(`${side.api}/search?q=${encodeURIComponent(text)}`)
+      .catch((problem) => ({ named: null, hits: [], left_out: 0, problem: problem.message }))));
     if (mine !== asked) return;
     const items = [];
     const views = places(text);
-    const { named } = found;
-    if (named) items.push(item(`${named.address} ${named.symbol}`, `address, ${named.uses} uses`, () => app.open(named.address)));
+    all.forEach(({ named }, number) => {
+      const side = sides[number];
+      if (named) items.push(item(`${named.address} ${named.symbol}`, `address, ${named.uses} uses`, () => side.open(named.address)));
+    });
     items.push(...views);
-    for (const hit of found.hits.slice(0, 100)) {
-      const where = hit.rung === null ? "" : `${app.routineName(hit.routine)} rung ${hit.rung}: `;
-      items.push(item(where + hit.text, hit.kind, () => (hit.rung === null ? app.open(hit.text) : app.goto(hit.routine, hit.rung))));
-    }
-    const more = found.hits.length - 100 + found.left_out;
-    if (more > 0) items.push(note(`${more} more; search for something narrower`));
-    if (!items.length) items.push(note(found.problem ?? "Nothing found."));
+    all.forEach((found, number) => {
+      const side = sides[number];
+      const name = side === app ? "" : `${side.project.file}, `;
+      for (const hit of found.hits.slice(0, 100)) {
+        const where = hit.rung === null ? name : `${name}${side.routineName(hit.routine)} rung ${hit.rung}: `;
+        items.push(item(where + hit.text, hit.kind, () => (hit.rung === null ? side.open(hit.text) : side.goto(hit.routine, hit.rung))));
+      }
+      const more = found.hits.length - 100 + found.left_out;
+      if (more > 0) items.push(note(`${name}${more} more; search for something narrower`));
+    });
+    if (!items.length) items.push(note(all[0].problem ?? "Nothing found."));
     show(items);
   };
   let timer = 0;

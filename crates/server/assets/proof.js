@@ -90,24 +90,25 @@ export function search(app) {
   return [node, () => clearTimeout(timer)];
 }
 
-/** The tape, and where on it both machines are. */
+/** The tape, and how far it is. It stays in sight in every view: nothing can be changed by hand while it is played. */
 export function tape(app) {
   const name = el("strong");
   const at = el("span", { class: "seconds" });
   const bar = el("progress", { max: 1, value: 0, ariaLabel: "Scans of the tape that have run" });
   const start = button("|◀ Start", "Before the first scan of the tape", () => control({ do: "back", count: app.live.status.tape?.at ?? 0 }), { id: "tape-start" });
-  const playing = el("div", { class: "row tape" }, el("span", {}, "Tape: ", name), bar, at, app.readOnly ? null : [start,
+  const playing = el("section", { class: "row tape", ariaLabel: "Tape", hidden: true }, el("span", {}, "Tape: ", name), bar, at, app.readOnly ? null : [start,
     button("◀ Back", "One scan back (B)", () => app.back(1)), button("Scan ▶", "The next scan of the tape (S)", () => app.step(1), { id: "tape-step" }),
-    button("To the difference ▶|", "Runs the tape up to the first difference", () => toDifference(app), { id: "tape-difference" }),
+    app.other ? button("To the difference ▶|", "Runs the tape up to the first difference", () => toDifference(app), { id: "tape-difference" })
+      : button("To the end ▶|", "Runs the rest of the tape", () => control({ do: "run", speed: null }), { id: "tape-end" }),
     button("Leave the tape", "Go on by hand from here", () => control({ do: "tape", text: null }), { id: "tape-leave" })]);
-  const stop = app.live.listen(({ status: { tape: now } }) => {
+  app.live.listen(({ status: { tape: now } }) => {
     playing.hidden = !now;
     if (!now) return;
     name.textContent = now.name || "scenario";
     at.textContent = `scan ${now.at} of ${now.scans}`;
     bar.value = now.at / now.scans;
   });
-  return [playing, stop];
+  return playing;
 }
 
 /** Goes to the scan of the first difference: back where it was passed, else on until it comes. */

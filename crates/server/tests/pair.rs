@@ -181,10 +181,13 @@ fn what_is_recorded_replays_on_both() {
     set(&mut bench, "I:0.0/2", 1);
     set(&mut bench, "other:X0", 1);
     scans(&mut bench, 5);
-    bench.expect(&["O:0.0/1".to_owned(), "T4:0.ACC".to_owned()]).expect("recording");
+    bench.expect(&["other:Y1".to_owned(), "T4:0.ACC".to_owned()]).expect("recording");
     let (text, problems) = bench.recorded(&Default::default()).expect("recording");
     assert_eq!(problems, Vec::<String>::new(), "{text}");
-    assert!(text.contains("\"I:0.0/1\" = 1") && !text.contains("other:"), "one program's scenario: {text}");
+    assert!(
+        text.contains("\"I:0.0/1\" = 1") && text.contains("\"O:0.0/1\" = 1") && !text.contains("other:"),
+        "one program's scenario: {text}"
+    );
     let tape = Tape::read(&text, bench.initial()).expect("reads");
     bench.play(tape).expect("plays");
     while bench.scan(true) {}

@@ -22,6 +22,10 @@ type Loaded = Result<(Workbench, View, PairView), Outcome>;
 
 pub fn load(arguments: &ServeArguments, other: &Path) -> Result<Loaded, Error> {
     let path = &arguments.program;
+    if other.is_dir() {
+        let why = "is a folder: name the program that `rungs migrate` wrote there, and its address-map.csv with --map";
+        return Err(Error::Use(format!("{}: {why}", other.display())));
+    }
     let (first, second) = match (prove::open(path), prove::open(other)) {
         (Ok(first), Ok(second)) => (first, second),
         (first, second) => {

@@ -385,7 +385,10 @@ impl Workbench {
     pub fn expect(&mut self, addresses: &[String]) -> Result<(), String> {
         let recorder = self.recorder.as_mut().ok_or("there is no recording in progress")?;
         let controller = self.state.machine.controller();
-        let read = |address: &String| Ok((address.clone(), controller.read(address)?));
+        let pair = self.state.machine.pair();
+        // A scenario is one program's: of two it is the original's.
+        let own = |address: &String| pair.map_or_else(|| Ok(address.clone()), |pair| pair.own(address));
+        let read = |address: &String| Ok((own(address)?, controller.read(address)?));
         recorder.expect(addresses.iter().map(read).collect::<Result<Vec<_>, String>>()?);
         Ok(())
     }
