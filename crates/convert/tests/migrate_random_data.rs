@@ -46,9 +46,6 @@ fn is_mx(family: Family) -> bool {
 
 const FLOATS: [f32; 14] = [0.0, 1.0, -1.0, 0.5, -0.5, 1.5, 2.5, -2.5, 0.1, 100.25, 32767.4, 32767.5, -32768.5, 40000.0];
 
-/// Conditions about indexes.
-const REACH: [&str; 2] = ["must stay within", "must lead inside the file"];
-
 /// Conditions that the floats of these programs keep.
 const KEPT: [&str; 4] = [
     "floats are ordinary numbers of single precision",
@@ -313,7 +310,7 @@ fn fill(image: &mut Image, dice: &mut Dice) {
 /// Whether a rung is compared: it is exact, or what it states is kept here. An index that leaves its file stops the
 /// original.
 fn holds(rung: &migrate::RungResult, floats: bool) -> bool {
-    let reach = |note: &migrate::marks::Note| REACH.iter().any(|part| note.text.contains(part));
+    let reach = |note: &migrate::marks::Note| note.mark == migrate::Mark::Indirect;
     let kept = |note: &migrate::marks::Note| floats && KEPT.iter().any(|kept| note.text.starts_with(kept));
     match rung.verdict {
         Verdict::Exact => true,
