@@ -7,6 +7,8 @@ use ladder::Severity;
 use sim::scenario::{Foreign, Routine, RunError, Spot};
 use sim::{Approximation, Refusal};
 
+use crate::output::Outcome;
+
 /// What is followed where a person names a timer or counter: its members; else the name itself.
 pub fn members(text: &str) -> Vec<String> {
     let number = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit());
@@ -43,6 +45,15 @@ pub fn program_of(text: &str, options: &Options) -> Result<(Project, Program, Ve
     let named = program.approximations().iter();
     let approximations = named.map(|found| Approximation { site: None, why: found.to_string() }).collect();
     Ok((reading.project, program, approximations))
+}
+
+/// How a command ends whose program does not run: what nobody can read is unreadable input, any other program is refused.
+pub fn refused(text: &str) -> Outcome {
+    let lost = |found: &domore::Diagnostic| found.rung.is_none() && found.problem.severity() == Severity::Error;
+    match domore::text::read(text) {
+        Ok(reading) if !reading.diagnostics.iter().any(lost) => Outcome::Finding,
+        _ => Outcome::Unreadable,
+    }
 }
 
 /// A machine for the text of a program file.

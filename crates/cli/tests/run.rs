@@ -233,3 +233,31 @@ fn do_more_text_runs_with_the_same_options() {
     let rows: Vec<&str> = text.lines().collect();
     assert_eq!(rows, ["scan,time_s,T0.Acc,Y0", "1,0,0,0", "2,0.01,0,0", "3,0.02,10,0", "4,0.03,20,1", "5,0.04,30,1"]);
 }
+
+#[test]
+fn do_more_text_that_does_not_run_ends_with_the_reason() {
+    let folder = std::env::temp_dir().join(format!("rungs-run-refused-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    // What is not read whole is unreadable; a rung that does not balance or an instruction without a model is refused.
+    for (name, body, code, why) in [
+        ("open.txt", "STR X0\nOUT Y0\n\n", 3, "expected $PGMEND"),
+        ("stack.txt", "STR X0\nSTR X1\nOUT Y0\n\n$PGMEND $Main\n", 1, "too many STR"),
+        ("pid.txt", "STR X0\nPIDBOX P0\n\n$PGMEND $Main\n", 1, "PIDBOX"),
+        ("preset.txt", "STR X0\nTMR T0 2147483648\n\n$PGMEND $Main\n", 1, "goes up to 2147483647"),
+    ] {
+        let path = folder.join(name);
+        std::fs::write(&path, format!("PLC DM-SIM\n$PRGRM $Main\n\n{body}")).expect("a file");
+        for command in ["run", "bench"] {
+            let mut run = std::process::Command::new(env!("CARGO_BIN_EXE_rungs"));
+            run.arg(command).arg(&path);
+            if command == "run" {
+                run.args(["--watch", "Y0"]);
+            }
+            let output = run.output().expect("the command runs");
+            let shown = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(code), "{command} {name}: {shown}");
+            assert!(shown.contains(why), "{command} {name}: {shown}");
+        }
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
+}

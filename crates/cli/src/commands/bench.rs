@@ -39,7 +39,7 @@ pub fn run(arguments: &BenchArguments) -> Result<Outcome, Error> {
             Err(why) => {
                 why.iter().for_each(|line| eprintln!("{}", printable(&format!("{name}: {line}"))));
                 eprintln!("{name}: not run");
-                Ok(Outcome::Finding)
+                Ok(do_more::refused(&text))
             }
         };
     }

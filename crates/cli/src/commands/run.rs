@@ -14,7 +14,7 @@ use super::test::reasons;
 use super::trace::{Column, Row, RungColumn, parts, writer};
 use crate::args::RunArguments;
 use crate::do_more;
-use crate::output::{Error, Outcome};
+use crate::output::{Error, Outcome, printable};
 
 /// More scans than anyone reads; a slip of units otherwise fills a disk.
 const MOST_SCANS: u128 = 10_000_000;
@@ -103,9 +103,9 @@ fn run_do_more(arguments: &RunArguments, text: &str) -> Result<Outcome, Error> {
     let (machine, approximations) = match do_more::machine_of(text, &options) {
         Ok(found) => found,
         Err(why) => {
-            why.iter().for_each(|line| eprintln!("{name}: {line}"));
+            why.iter().for_each(|line| eprintln!("{}", printable(&format!("{name}: {line}"))));
             eprintln!("{name}: not run");
-            return Ok(Outcome::Finding);
+            return Ok(do_more::refused(text));
         }
     };
     for line in reasons(&approximations) {

@@ -159,7 +159,8 @@ pub(super) fn apply(image: &Image, places: &mut Places, rows: &[MapRow]) -> Resu
     };
     let runs = rows.iter().filter(|row| row.words > 0).filter_map(|row| Address::parse(&row.slc).ok());
     let told: BTreeSet<usize> = runs.filter_map(|address| beginning(&address)).collect();
-    let mut pinned = vec![false; places.spans().len()];
+    // The row that placed each span.
+    let mut pinned: Vec<Option<usize>> = vec![None; places.spans().len()];
     let (mut named, mut wishes) = (Vec::new(), Vec::new());
     for (index, row) in rows.iter().enumerate() {
         let wrong = |what: String| MapError { row: index + 1, what };
@@ -189,12 +190,12 @@ pub(super) fn apply(image: &Image, places: &mut Places, rows: &[MapRow]) -> Resu
         if at.block.is_bits() && at.number % 16 != 0 {
             return Err(wrong(format!("{}: words of bits begin at a multiple of 16", row.domore)));
         }
-        if pinned.get(span) == Some(&true) {
+        if pinned.get(span).is_some_and(Option::is_some) {
             return Err(wrong(format!("{} is placed by another row before", row.slc)));
         }
         found.at = at;
         if let Some(pinned) = pinned.get_mut(span) {
-            *pinned = true;
+            *pinned = Some(index + 1);
         }
         let (name, description) = of_file(image, key.0, key.1);
         let edited = |text: &str, own: &str| !text.is_empty() && text != own.trim();
@@ -265,9 +266,9 @@ fn fits(span: &Span, block: Block) -> bool {
 }
 
 /// Puts what nobody placed behind everything else, and refuses overlaps.
-fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
+fn settle(places: &mut Places, pinned: &[Option<usize>]) -> Result<(), MapError> {
     let mut next: BTreeMap<Block, u32> = BTreeMap::new();
-    for (span, _) in places.spans().iter().zip(pinned).filter(|(_, pinned)| **pinned) {
+    for (span, _) in places.spans().iter().zip(pinned).filter(|(_, pinned)| pinned.is_some()) {
         let end = next.entry(span.at.block).or_default();
         *end = (*end).max(span.at.number.saturating_add(span.elements()));
     }
@@ -276,7 +277,7 @@ fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
         *end = (*end).max(element.number.saturating_add(1));
     }
     for (span, pinned) in places.spans_mut().iter_mut().zip(pinned) {
-        if !pinned {
+        if pinned.is_none() {
             let end = next.entry(span.at.block).or_default();
             if span.at.block.is_bits() {
                 *end = end.next_multiple_of(16);
@@ -288,12 +289,13 @@ fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
     for (block, end) in next {
         places.set_next(block, end);
     }
-    let mut ranges: Vec<(Block, u32, u32, String)> = places
+    let mut ranges: Vec<(Block, u32, u32, String, Option<usize>)> = places
         .spans()
         .iter()
-        .map(|span| {
+        .zip(pinned)
+        .map(|(span, row)| {
             let name = span.address(0).map(|address| address.to_string()).unwrap_or_default();
-            (span.at.block, span.at.number, span.at.number.saturating_add(span.elements()), name)
+            (span.at.block, span.at.number, span.at.number.saturating_add(span.elements()), name, *row)
         })
         .collect();
     ranges.sort();
@@ -303,7 +305,7 @@ fn settle(places: &mut Places, pinned: &[bool]) -> Result<(), MapError> {
             && b.1 < a.2
         {
             let what = format!("{} and {} overlap at {}{}", a.3, b.3, a.0.name(), b.1);
-            return Err(MapError { row: 0, what });
+            return Err(MapError { row: b.4.or(a.4).unwrap_or(0), what });
         }
     }
     let mut taken: BTreeMap<String, String> = BTreeMap::new();
