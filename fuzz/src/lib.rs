@@ -2,6 +2,7 @@
 //! see [`seed`]; it aborts where the property does not hold.
 
 pub mod check;
+pub mod client;
 pub mod seed;
 
 pub use libfuzzer_sys;

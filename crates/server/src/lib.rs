@@ -13,4 +13,4 @@ pub mod view;
 mod web;
 pub mod workbench;
 
-pub use web::{Access, Limits, PairView, serve, serve_pair};
+pub use web::{Access, Limits, Offline, PairView, serve, serve_pair};

@@ -186,6 +186,13 @@ async fn part(socket: &mut WebSocket, mut why: String) -> Result<(), axum::Error
     Ok(())
 }
 
+/// What a page is told first that sends this message.
+pub(super) fn told_first(message: &str, served: &Served) -> Result<String, String> {
+    let Object(see) = serde_json::from_str::<Object<See>>(message).map_err(|why| why.to_string())?;
+    let frame = Arc::clone(&served.engine.frames().borrow());
+    Ok(tell(&frame, &see, &mut Known::default(), served))
+}
+
 fn tell(frame: &Frame, see: &See, known: &mut Known, served: &Served) -> String {
     let status = Status::of(&frame.status, served);
     let mut told = Told {

@@ -6,6 +6,7 @@ mod control;
 mod describe;
 mod guard;
 mod live;
+mod offline;
 mod pages;
 mod pair;
 mod problem;
@@ -28,6 +29,7 @@ use crate::engine::{self, Handle, Pace};
 use crate::view::Program;
 pub use connections::Limits;
 use guard::Guard;
+pub use offline::Offline;
 pub use pair::PairView;
 
 /// Longest body of a request: a plant file.
@@ -53,6 +55,20 @@ pub(crate) struct Served {
 }
 
 impl Served {
+    fn new(engine: Handle, (program, pair): (Arc<dyn Program>, Option<Arc<PairView>>), access: &Access) -> Served {
+        Served {
+            engine,
+            program,
+            browsers: Arc::new(Semaphore::new(live::BROWSERS)),
+            read_only: access.read_only,
+            token: access.token.is_some(),
+            silent: access.limits.silent,
+            server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
+            pair,
+            prefix: "",
+        }
+    }
+
     /// An address of the program served, as the engine takes it.
     fn spelled(&self, address: &str) -> String {
         format!("{}{address}", self.prefix)
@@ -110,17 +126,7 @@ async fn serve_either(
     if !bound.ip().is_loopback() && access.token.is_none() {
         return Err(std::io::Error::other("a server that others can reach needs a token"));
     }
-    let served = Served {
-        engine,
-        program,
-        browsers: Arc::new(Semaphore::new(live::BROWSERS)),
-        read_only: access.read_only,
-        token: access.token.is_some(),
-        silent: access.limits.silent,
-        server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
-        pair,
-        prefix: "",
-    };
+    let served = Served::new(engine, (program, pair), &access);
     let guard = Arc::new(Guard::new(bound, access.token, access.limits.body));
     connections::serve(listener, router(served, guard), access.limits, ended).await;
     Ok(())
@@ -170,16 +176,18 @@ fn routes() -> Vec<(String, MethodRouter<Served>)> {
     all.chain(sides).collect()
 }
 
-fn router(served: Served, guard: Arc<Guard>) -> Router {
+/// All routes, with what holds whoever asks.
+fn unguarded(read_only: bool) -> Router<Served> {
     let mut all = routes().into_iter().fold(Router::new(), |all, (path, answer)| all.route(&path, answer));
-    if served.read_only {
+    if read_only {
         all = all.route_layer(middleware::from_fn(guard::only_look));
     }
-    all.fallback(pages::missing)
-        .method_not_allowed_fallback(pages::wrong_method)
-        .layer(DefaultBodyLimit::max(BODY))
-        .layer(middleware::from_fn_with_state(guard, guard::guard))
-        .with_state(served)
+    all.fallback(pages::missing).method_not_allowed_fallback(pages::wrong_method).layer(DefaultBodyLimit::max(BODY))
+}
+
+fn router(served: Served, guard: Arc<Guard>) -> Router {
+    let guarded = unguarded(served.read_only).layer(middleware::from_fn_with_state(guard, guard::guard));
+    guarded.with_state(served)
 }
 
 /// The state of the run, as browsers get it.
