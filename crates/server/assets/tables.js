@@ -1,6 +1,7 @@
 // Views that are tables of values: the controller, data files, points, timers, forces, the watch list.
 
 import { control, get, post, tell } from "./api.js";
+import { WORDS, bits, heads, show } from "./bits.js";
 import { button, byId, el } from "./dom.js";
 import { actions, menu } from "./menu.js";
 import { RADICES, shown } from "./values.js";
@@ -16,10 +17,14 @@ function cell(app, address, radix) {
 /** Keeps all cells below a node up to date; answers how to stop. */
 function follow(app, node, part) {
   const cells = [...node.querySelectorAll("[data-address]")];
-  app.live.see(part, { values: cells.map((one) => one.dataset.address) });
+  app.live.see(part, { values: [...new Set(cells.map((one) => one.dataset.address))] });
   const stop = app.live.listen((_, live) => {
     for (const one of cells) {
       const now = live.values.get(one.dataset.address);
+      if (one.dataset.bit !== undefined) {
+        show(one, now);
+        continue;
+      }
       if (one.classList.contains("lamp")) {
         if (one.getAttribute("role") === "switch") one.setAttribute("aria-checked", String(Boolean(now)));
         else one.ariaLabel = `${one.dataset.name} is ${now === undefined ? "not known yet" : now ? "on" : "off"}`;
@@ -45,24 +50,30 @@ const link = (app, address) => button(address, "Uses and value", () => app.open(
 /** Elements of one page of a data file. */
 const PAGE = 250;
 
-/** A data file; words in the radix chosen. */
+/** A data file; words in the radix chosen, or bit by bit. */
 export async function dataFile(app, view, label, from = 0, radix) {
-  const data = await get(`/api/data/${encodeURIComponent(label)}?from=${from}&count=${PAGE}`);
-  const file = app.project.data_files.find((one) => one.label === data.label);
-  const chosen = radix ?? data.radix;
+  const file = app.project.data_files.find((one) => one.label.toLowerCase() === label.toLowerCase());
+  if (!file) throw new Error(`There is no data file ${label}.`);
+  const words = app.project.dialect === "slc" && /^[BNIOS]\d*$/.test(file.label);
+  const chosen = radix ?? (words && /^[BIOS]/.test(file.label) ? "bits" : null);
+  const size = chosen === "bits" ? WORDS : PAGE;
+  const data = await get(`${app.api}/data/${encodeURIComponent(label)}?from=${from}&count=${size}`);
+  const shownAs = chosen ?? data.radix;
+  const grid = shownAs === "bits";
   const choose = el("select", { ariaLabel: "Radix", on: { change: () => app.show(() => dataFile(app, view, label, from, choose.value)) } },
-    RADICES.map((one) => el("option", { value: one, selected: one === chosen }, one)));
-  const page = (to, text) => button(text, text, () => app.show(() => dataFile(app, view, label, to, chosen)), { disabled: to < 0 || to >= file.elements });
+    [...(words ? ["bits"] : []), ...RADICES].map((one) => el("option", { value: one, selected: one === shownAs }, one)));
+  const page = (to, text) => button(text, text, () => app.show(() => dataFile(app, view, label, Math.max(0, to), shownAs)), { disabled: to <= -size || to >= file.elements });
   const rows = data.elements.map((element) => el("tr", {},
     el("th", { scope: "row" }, link(app, element.address)),
-    data.columns.map((column) => el("td", {}, cell(app, element.address + column, column === "" ? chosen : "decimal"))),
+    grid ? bits(app, element.address) : data.columns.map((column) => el("td", {}, cell(app, element.address + column, column === "" ? shownAs : "decimal"))),
     el("td", { class: "symbol" }, element.symbol), el("td", { class: "description" }, element.description)));
+  const columns = grid ? heads() : data.columns.map((column) => el("th", {}, column || "Value"));
   view.replaceChildren(
     el("h2", {}, app.dataName(file)),
     el("div", { class: "row" }, el("label", {}, "Radix ", choose),
-      file.elements > PAGE ? [page(from - PAGE, "Previous"), page(from + PAGE, "Next"), `${from} to ${Math.min(from + PAGE, file.elements) - 1} of ${file.elements}`] : null),
-    el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: app.dataName(file) }, el("table", {},
-      el("thead", {}, el("tr", {}, el("th", {}, "Address"), data.columns.map((column) => el("th", {}, column || "Value")), el("th", {}, "Symbol"), el("th", {}, "Description"))),
+      file.elements > size ? [page(from - size, "Previous"), page(from + size, "Next"), `${from} to ${Math.min(from + size, file.elements) - 1} of ${file.elements}`] : null),
+    el("div", { class: "scroll", tabIndex: 0, role: "region", ariaLabel: app.dataName(file) }, el("table", { class: grid ? "bits" : "" },
+      el("thead", {}, el("tr", {}, el("th", {}, "Address"), columns, el("th", {}, "Symbol"), el("th", {}, "Description"))),
       el("tbody", {}, rows))));
   return follow(app, view, "table");
 }

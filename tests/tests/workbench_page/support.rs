@@ -35,7 +35,16 @@ pub(crate) fn do_more(path: &Path) -> (Box<dyn Subject>, Arc<dyn Program>) {
 }
 
 /// Serves a program until the tests end; answers the address of its page.
-pub(crate) fn serve((machine, program): (Box<dyn Subject>, Arc<dyn Program>), plant: Option<&str>) -> String {
+pub(crate) fn serve(served: (Box<dyn Subject>, Arc<dyn Program>), plant: Option<&str>) -> String {
+    serve_to(served, plant, Access::default())
+}
+
+/// The same, for those who have this access.
+pub(crate) fn serve_to(
+    (machine, program): (Box<dyn Subject>, Arc<dyn Program>),
+    plant: Option<&str>,
+    access: Access,
+) -> String {
     let mut bench = Workbench::new(machine);
     if let Some(name) = plant {
         let text = std::fs::read_to_string(format!("{EXAMPLES}{name}")).expect(name);
@@ -49,7 +58,7 @@ pub(crate) fn serve((machine, program): (Box<dyn Subject>, Arc<dyn Program>), pl
             let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
             told.send(listener.local_addr().expect("bound")).expect("the test waits");
             let engine = engine::start(bench).expect("a thread");
-            server::serve(listener, engine, program, Access::default(), std::future::pending()).await
+            server::serve(listener, engine, program, access, std::future::pending()).await
         })
     });
     format!("http://{}/", address.recv().expect("the server starts"))

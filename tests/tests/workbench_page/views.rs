@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use rungs_tests::browser::{Browser, key};
+use server::Access;
 use sim::scenario::Scenario;
 
 use super::support::*;
@@ -117,6 +118,20 @@ fn the_watch_list_is_kept_and_values_take_every_radix() {
         ));
         browser.wait_for(&format!("{} === '{text}'", cell("N7:0")));
     }
+    // Bit by bit, as the vendor shows binary files; keys lead along the bits.
+    show(&browser, &page, "data/B3");
+    let bit = |number: u8| format!("document.querySelector(\"#view button[title='B3:0/{number}']\")");
+    browser.wait_for(&format!("{}?.textContent === '0'", bit(15)));
+    browser.run(&format!("{}.focus()", bit(15)));
+    for _ in 0..3 {
+        browser.keys(key::RIGHT);
+    }
+    browser.keys(key::ENTER);
+    browser.wait_for(&format!("{0}.textContent === '1' && {0}.ariaPressed === 'true'", bit(12)));
+    browser.run(
+        "const one = document.querySelector('#view select'); one.value = 'hex'; one.dispatchEvent(new Event('change'))",
+    );
+    browser.wait_for(&format!("{} === '1000h'", cell("B3:0")));
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
@@ -346,5 +361,31 @@ fn the_batch_plant_fills_boxes_until_the_program_has_counted_them() {
         .run("const one = document.querySelector('#speed'); one.value = '100'; one.dispatchEvent(new Event('change'))");
     browser.wait_for(&format!("Number({}) >= 1", cell("C5:1.ACC")));
     assert!(!browser.is("document.querySelector('.banner.wrong')"));
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
+#[test]
+fn who_may_only_look_can_change_nothing() {
+    let Some(browser) = Browser::start() else { return };
+    let page = serve_to(
+        slc(Path::new(&format!("{EXAMPLES}motor/motor.RSS"))),
+        None,
+        Access { read_only: true, ..Access::default() },
+    );
+    for view in ["ladder/2", "data/B3", "data/T4", "points", "forces", "session", "trend"] {
+        show(&browser, &page, view);
+        let changing = "[...document.querySelectorAll('#controls *, #view button, #view input, #view [role=switch]')] \
+            .filter(one => !one.disabled && /^(Run|Scan|◀ Back|Force|Enable|Remove|Begin|End|Keep|Follow|Write|Restart|Power)/.test(one.textContent))";
+        assert_eq!(browser.number(&format!("{changing}.length")), 0.0, "{view}");
+        assert!(!browser.is("[...document.querySelectorAll('#view .cell, #view .lamp.input, #view [data-bit]')].some(one => !one.disabled)"), "{view}");
+    }
+    assert_eq!(browser.text("#controls"), "read-only");
+    // A contact tells what it is, and changes nothing.
+    show(&browser, &page, "ladder/2");
+    browser.wait_for("document.querySelector('svg.rung g.i')");
+    browser.run("document.querySelector('svg.rung g.i').focus()");
+    browser.keys(key::ENTER);
+    browser.wait_for("document.querySelector('#menu').matches(':popover-open')");
+    assert!(!browser.is("/Toggle|Force|Edit/.test(document.querySelector('#menu').textContent)"));
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }

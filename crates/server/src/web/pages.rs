@@ -20,6 +20,7 @@ const STYLE: &str = "text/css; charset=utf-8";
 /// Name, type and content of everything a page loads.
 const ASSETS: &[(&str, &str, &str)] = &[
     ("api.js", SCRIPT, include_str!("../../assets/api.js")),
+    ("bits.js", SCRIPT, include_str!("../../assets/bits.js")),
     ("detail.js", SCRIPT, include_str!("../../assets/detail.js")),
     ("dom.js", SCRIPT, include_str!("../../assets/dom.js")),
     ("fault.js", SCRIPT, include_str!("../../assets/fault.js")),
