@@ -165,7 +165,7 @@ fn a_search_leads_to_the_difference() {
     browser.screenshot("workbench-pair-difference");
     for dark in [false, true] {
         browser.dark(dark);
-        axe::check(&browser, "a difference", true);
+        axe::check(&browser, "a difference");
     }
     browser.screenshot("workbench-pair-dark");
     browser.dark(false);
@@ -197,7 +197,7 @@ fn a_search_that_finds_nothing_says_what_it_covered() {
     assert!(browser.text("#verdict pre").contains("not exercised by any run"));
     browser.run("document.querySelector('#verdict').scrollIntoView()");
     browser.screenshot("workbench-pair-verdict");
-    axe::check(&browser, "a verdict", true);
+    axe::check(&browser, "a verdict");
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
@@ -224,7 +224,7 @@ fn both_fit_three_widths() {
         );
         browser.run("document.querySelector('.pair-values').scrollIntoView()");
         browser.screenshot(&format!("workbench-pair-values-{width}"));
-        axe::check(&browser, &format!("two programs at {width}"), true);
+        axe::check(&browser, &format!("two programs at {width}"));
     }
     browser.resize(1280, 900);
     browser.run("document.documentElement.style.fontSize = '200%'");
