@@ -64,7 +64,7 @@ export function search(app) {
     progress.value = busy ? now.scans / now.of : 0;
     state.textContent = {
       idle: "", done: "",
-      running: `${count(now.scans)} of ${count(now.of)} scans`,
+      running: now.scans ? `${count(now.scans)} of ${count(now.of)} scans` : "Preparing…",
       arguing: `${count(now.scans)} of ${count(now.of)} scans; looking for what cannot happen`,
       shortening: "A difference was found; the way to it is being made shorter.",
       stopping: "Stopping…",

@@ -217,6 +217,7 @@ impl Report {
         }
         if self.scans < 2 && campaign.found.is_none() {
             let why = match (self.scans, campaign.both.a.stopped()) {
+                (0, _) if campaign.is_stopped() => "the run was stopped before its first scan: nothing was compared",
                 (0, _) => "no scan was asked for: nothing was compared",
                 (_, Some(_)) => "the original stops in its first scan",
                 (_, None) => "one scan only: no input was changed",
