@@ -59,6 +59,29 @@ pub(super) fn in_expressions(code: &[domore::Instruction]) -> Option<String> {
     found
 }
 
+/// Levels of parentheses an expression of MATH may have, those of functions included. (vendor's product page: nesting
+/// to 8 levels)
+const MOST_LEVELS: usize = 8;
+
+/// Levels of the deepest expression of a rung, if Designer would not take it.
+pub(super) fn too_deep(code: &[domore::Instruction]) -> Option<usize> {
+    let maths = code.iter().filter(|instruction| instruction.is("MATH"));
+    maths.map(|instruction| levels(instruction.operand(1))).max().filter(|levels| *levels > MOST_LEVELS)
+}
+
+fn levels(text: &str) -> usize {
+    let (mut depth, mut most) = (0_usize, 0);
+    for c in text.chars() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        most = most.max(depth);
+    }
+    most
+}
+
 fn of_address(address: &Address, count: &mut impl FnMut(&str, &'static str)) {
     match address.cast {
         None => {}
@@ -120,6 +143,16 @@ fn of_expression(text: &str, count: &mut impl FnMut(&str, &'static str)) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn levels_of_parentheses_are_counted() {
+        assert_eq!(levels("\"((N0 + 1) * IF(N1 > (2), 3, (4))) - (5)\""), 3);
+        let rung = |inner: usize| {
+            let text = format!("\"{}N0{}\"", "(".repeat(inner), ")".repeat(inner));
+            [domore::Instruction::new("MATH", ["D0".to_owned(), text])]
+        };
+        assert_eq!((too_deep(&rung(8)), too_deep(&rung(9))), (None, Some(9)));
+    }
 
     #[test]
     fn expressions_are_looked_into() {

@@ -307,6 +307,10 @@ fn convert(
     }
     rung::series(context, &mut e, &rung.series)?;
     let code = e.finish();
+    if let Some(levels) = forms::too_deep(&code) {
+        let text = format!("an expression of {levels} levels of parentheses: MATH takes 8");
+        return Err(Person::new(Mark::NoCounterpart, text));
+    }
     if context.options.only_confirmed
         && let Some(form) = forms::in_expressions(&code)
     {

@@ -559,8 +559,8 @@ impl Bit {
             // A space would end the operand.
             Bit::Indexed(text) => e.math(&text.replace(' ', ""), if on { "1" } else { "0" }),
             Bit::InWord { word, bit } => {
-                let set = format!("({word} | (1 << ({bit})))");
-                let value = if on { set } else { format!("({word} & (-1 - (1 << ({bit}))))") };
+                let set = format!("{word} | (1 << ({bit}))");
+                let value = if on { set } else { format!("{word} & (-1 - (1 << ({bit})))") };
                 e.math(&word.replace(' ', ""), &sign_extended(&value));
             }
             Bit::Within { index, bit } => e.when(|e| {
