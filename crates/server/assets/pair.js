@@ -222,7 +222,7 @@ function values(app, rows) {
     if (row.kind === "bit") post("/api/write", { address: row.original, value: !now });
     else app.ask(`New value of ${row.original} and ${row.other}`, shown(now).replaceAll(" ", ""), (text) => post("/api/write", { address: row.original, value: typed(text) }));
   };
-  const link = (address) => button(address, "Uses and value", () => app.open(address), { class: "link address" });
+  const link = (address, text = address) => button(text, "Uses and value", () => app.open(address), { class: "link address" });
   const cell = (row) => button("…", `${row.original} and ${row.other}: change in both`, () => change(row), { class: "cell", disabled: app.readOnly });
 
   function lay() {
@@ -239,8 +239,7 @@ function values(app, rows) {
     body.replaceChildren(...list.map((row) => {
       const parts = [cell(row), el("output", { class: "cell" }, "…"), el("td", { class: "mark" })];
       const line = el("tr", {}, parts[2], el("th", { scope: "row" }, link(row.original)), el("td", {}, parts[0]),
-        el("td", {}, link(app.other.prefix + row.other)), el("td", {}, parts[1]), el("td", {}, el("span", { class: "symbol" }, row.symbol), " ", el("span", { class: "description" }, row.description)));
-      line.querySelector("td:nth-of-type(3) button").textContent = row.other;
+        el("td", {}, link(app.other.prefix + row.other, row.other)), el("td", {}, parts[1]), el("td", {}, el("span", { class: "symbol" }, row.symbol), " ", el("span", { class: "description" }, row.description)));
       cells.set(row.row, [row, line, ...parts]);
       return line;
     }));
