@@ -41,7 +41,7 @@ export async function open(app, address) {
   const force = (state, text) =>
     button(text, `${text} ${found.address}`, () => post(`${app.api}/force`, { address: found.address, state }));
   const point = app.project.points.some((point) => point.address === found.address && !point.analog) || /^[IOXY]/.test(found.address);
-  panel.replaceChildren(
+  panel.replaceChildren(...[
     el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app), { class: "close", ariaLabel: "Close" })),
     el("p", { class: "symbol" }, found.symbol),
     el("p", { class: "description" }, found.description),
@@ -58,7 +58,7 @@ export async function open(app, address) {
       el("span", { class: `access ${use.access.includes("write") ? "writes" : "reads"}` }, use.access),
       el("code", {}, use.text)))),
     found.left_out ? el("p", {}, `${found.left_out} more are not listed.`) : null,
-  );
+  ].filter(Boolean));
   panel.ariaLabel = `Address ${found.address}`;
   panel.hidden = false;
   panel.focus({ preventScroll: true });

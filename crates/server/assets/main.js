@@ -180,6 +180,13 @@ class App {
     return other ? this.other.open(address.slice(this.other.prefix.length)) : open(this, address);
   }
 
+  /** Who uses an address, of two programs side by side of either one. */
+  async uses(address) {
+    const prefix = this.other && address.startsWith(this.other.prefix) ? this.other.prefix : "";
+    const found = await get(`${prefix ? this.other.api : this.api}/uses?address=${encodeURIComponent(address.slice(prefix.length))}`);
+    return { ...found, address: prefix + found.address };
+  }
+
   /** The watch list of this program, as it was when the page was left. */
   #kept() {
     try {

@@ -49,7 +49,10 @@ export class Pane {
 
   /** Shows a rung, or the beginning of a routine. */
   async go(routine, rung = null, byHand = false) {
-    if (routine !== this.routine) await this.show(() => ladder(this.side, this.body, routine, null, false), routine);
+    if (routine !== this.routine) {
+      this.wanted = null;
+      await this.show(() => ladder(this.side, this.body, routine, null, false), routine);
+    }
     if (rung !== null) this.reveal(rung);
     if (byHand) this.turned(routine);
   }
@@ -89,6 +92,7 @@ export class Pane {
       this.resized.observe(label);
       return label;
     });
+    rungs[this.wanted]?.classList.add("goal");
     this.changed();
   }
 
@@ -164,8 +168,9 @@ export function level(a, b) {
       });
       pane.body.style.setProperty("--rest", together ? `${Math.max(...ends) - ends[side]}px` : "0px");
     });
-    // What was given room above the rung looked at moved it.
-    leads?.reach(true);
+    // What was given room above the rungs looked at, or lost it, moved them.
+    a.reach(true);
+    b.reach(true);
     follow();
   };
   const follow = () => {

@@ -204,7 +204,7 @@ export function forces(app, view) {
 export async function watch(app, view) {
   const address = el("input", { type: "text", ariaLabel: "Address to watch", placeholder: "T4:0.ACC", size: 14, autocomplete: "off" });
   const again = () => app.show(() => watch(app, view));
-  const known = (text) => get(`/api/uses?address=${encodeURIComponent(text)}`);
+  const known = (text) => app.uses(text);
   const form = el("form", { class: "row", on: { submit: async (event) => {
     event.preventDefault();
     const text = address.value.trim();
