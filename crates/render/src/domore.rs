@@ -18,7 +18,7 @@ use crate::layout::{MAX_ELEMENTS, NotDrawn, Part};
 use crate::rung::{Diagram, compose, head};
 use crate::scene::{Role, Scene};
 use crate::text::clean;
-use crate::{Style, paint};
+use crate::{Live, Style, paint};
 
 /// Rows of a table operand that are drawn.
 const TABLE_ROWS: usize = 200;
@@ -36,9 +36,30 @@ pub fn rung(block: &CodeBlock, index: usize, documentation: &Documentation<'_>, 
 
 /// The items of a rung and their places, see [`rung`].
 pub fn scene(block: &CodeBlock, index: usize, documentation: &Documentation<'_>, style: &Style) -> Scene {
+    laid_out(block, index, documentation, style, None)
+}
+
+/// As [`scene`], with a row for the value of each operand that `live` has one for: boxes of Do-more show none otherwise.
+pub fn live_scene(
+    block: &CodeBlock,
+    index: usize,
+    documentation: &Documentation<'_>,
+    style: &Style,
+    live: &Live<'_>,
+) -> Scene {
+    laid_out(block, index, documentation, style, Some(live))
+}
+
+fn laid_out(
+    block: &CodeBlock,
+    index: usize,
+    documentation: &Documentation<'_>,
+    style: &Style,
+    live: Option<&Live<'_>>,
+) -> Scene {
     let Some(rung) = block.rungs.get(index) else { return Scene::default() };
     let digits = block.rungs.len().to_string().len().max(4);
-    let source = Source { documentation, style };
+    let source = Source { documentation, style, live };
     let diagram = Diagram {
         number: format!("{:0digits$}", index + 1),
         title: "",
@@ -93,6 +114,7 @@ fn words(rung: &Rung) -> String {
 struct Source<'a> {
     documentation: &'a Documentation<'a>,
     style: &'a Style,
+    live: Option<&'a Live<'a>>,
 }
 
 impl Source<'_> {
@@ -124,16 +146,16 @@ impl Source<'_> {
     }
 
     fn face(&self, instruction: &Instruction, index: usize) -> Face {
-        let mut face = self.shape(instruction);
+        let mut face = self.shape(instruction, index);
         face.index = index;
         face.words = clean(&instruction.to_string()).into_owned();
         add_labels(&mut face.words, &face.labels);
         face
     }
 
-    fn shape(&self, instruction: &Instruction) -> Face {
+    fn shape(&self, instruction: &Instruction, number: usize) -> Face {
         let Some(entry) = instruction::by_mnemonic(&instruction.mnemonic) else {
-            return self.unknown(instruction);
+            return self.unknown(instruction, number);
         };
         let output = Some(!matches!(entry.effect, Effect::Contact { .. } | Effect::Flow(_)));
         let counts = entry.required..=entry.operands.len();
@@ -149,7 +171,7 @@ impl Source<'_> {
         let body = Body::Box {
             name: clean(&instruction.mnemonic).into_owned(),
             title: entry.title.to_owned(),
-            rows: self.rows(instruction, Some(entry), owner),
+            rows: self.rows(instruction, number, Some(entry), owner),
             flags: &[],
         };
         let labels = owner.map(|index| self.labels(instruction, index)).unwrap_or_default();
@@ -157,11 +179,11 @@ impl Source<'_> {
     }
 
     /// An instruction that is not in the table: all it holds, nothing guessed.
-    fn unknown(&self, instruction: &Instruction) -> Face {
+    fn unknown(&self, instruction: &Instruction, number: usize) -> Face {
         let body = Body::Box {
             name: clean(&instruction.mnemonic).into_owned(),
             title: "(unknown instruction)".to_owned(),
-            rows: self.rows(instruction, None, None),
+            rows: self.rows(instruction, number, None, None),
             flags: &[],
         };
         face(body)
@@ -196,7 +218,13 @@ impl Source<'_> {
     }
 
     /// The rows of a box below its title.
-    fn rows(&self, instruction: &Instruction, entry: Option<&Entry>, labelled: Option<usize>) -> Vec<Row> {
+    fn rows(
+        &self,
+        instruction: &Instruction,
+        number: usize,
+        entry: Option<&Entry>,
+        labelled: Option<usize>,
+    ) -> Vec<Row> {
         let mut rows = Vec::new();
         for (index, operand) in instruction.operands.iter().enumerate() {
             let known = entry.and_then(|entry| entry.operand(index));
@@ -216,6 +244,12 @@ impl Source<'_> {
                 _ => self.named(operand),
             };
             rows.push(Row { name, text: text(operand, index).with(Role::Operand, shown), live: false });
+            if let Some(value) = self.live.and_then(|live| (live.value)(number, index)) {
+                let counts = matches!(known.map(|known| known.kind), Some(Kind::Timer | Kind::Counter));
+                let name = if counts { "Acc".to_owned() } else { String::new() };
+                let text = Text { operand: Some(index), ..Text::new(Role::Value, clean(value.trim()).into_owned()) };
+                rows.push(Row { name, text, live: true });
+            }
         }
         rows
     }

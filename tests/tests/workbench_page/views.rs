@@ -330,9 +330,12 @@ fn a_do_more_project_goes_the_same_way() {
         text.contains("family = \"do-more\"") && text.contains("\"X3\" = 1"),
         "what the plant did is in it: {text}"
     );
-    // A contact is toggled where it stands.
+    // Boxes show what runs in them; a contact is toggled where it stands.
     show(&browser, &page, "ladder/1");
     browser.wait_for("document.querySelector('svg.rung g.i')");
+    let timer = "[...document.querySelectorAll('svg.rung g.i')].find(one => one.querySelector('title').textContent.startsWith('TMR T0')) \
+        .querySelector('text.live').textContent";
+    browser.wait_for(&format!("Number({timer}) >= 2500"));
     let contact = "[...document.querySelectorAll('svg.rung g.i')].find(one => one.querySelector('.hit') && /^STR X0/.test(one.querySelector('title').textContent))";
     browser.wait_for(contact);
     browser.run(&format!("{contact}.focus()"));

@@ -7,12 +7,13 @@ use domore::documentation::Documentation;
 use domore::instruction::{self, Effect, Kind};
 use domore::memory::{ElementType, Map};
 use domore::xref::CrossReference;
-use domore::{CodeBlock, Instruction, Project};
-use render::{Style, figure};
+use domore::{CodeBlock, Instruction, Project, Rung};
+use render::scene::Scene;
+use render::{Live, Style, figure};
 
 use super::{
     DataFileView, DataView, ElementView, HitView, HitsView, InstructionView, LISTED, Outline, PointView, Program,
-    RoutineView, RungView, TimerView, UseView, UsesView, ValueView,
+    RoutineView, RungView, TimerView, UseView, UsesView, ValueView, places,
 };
 
 /// A Do-more project, with what is known about it.
@@ -65,6 +66,12 @@ impl DoMoreProgram {
 
     fn block(&self, routine: u16) -> Option<&'static CodeBlock> {
         self.project.code_blocks().nth(routine.into())
+    }
+
+    /// A rung with places for the values of its instructions.
+    fn scene(&self, block: &CodeBlock, index: usize, views: &[InstructionView], style: &Style) -> Scene {
+        let live = Live { value: &|number, operand| places(views, number, operand) };
+        render::domore::live_scene(block, index, &self.documentation, style, &live)
     }
 
     fn documented(&self, element: &str) -> (String, String) {
@@ -141,6 +148,10 @@ fn columns(element: ElementType) -> Vec<String> {
     members.iter().map(|member| (*member).to_owned()).collect()
 }
 
+fn views(rung: &Rung) -> Vec<InstructionView> {
+    rung.instructions.iter().map(instruction).collect()
+}
+
 fn instruction(instruction: &Instruction) -> InstructionView {
     let entry = instruction::by_mnemonic(&instruction.mnemonic);
     let named = |operand: &str| operand.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
@@ -181,17 +192,16 @@ impl Program for DoMoreProgram {
 
     fn rung(&self, routine: u16, index: usize, width: usize) -> Option<RungView> {
         let block = self.block(routine)?;
-        let rung = block.rungs.get(index)?;
-        let scene = render::domore::scene(block, index, &self.documentation, &Style::graphic(width));
-        let all = rung.instructions.iter().map(instruction).collect();
-        Some(RungView::new(index, scene, all))
+        let views = views(block.rungs.get(index)?);
+        let scene = self.scene(block, index, &views, &Style::graphic(width));
+        Some(RungView::new(index, scene, views))
     }
 
     fn heights(&self, routine: u16, width: usize) -> Vec<usize> {
         let Some(block) = self.block(routine) else { return Vec::new() };
         let style = Style::graphic(width);
-        let scene = |index| render::domore::scene(block, index, &self.documentation, &style);
-        (0..block.rungs.len()).map(|index| scene(index).height * figure::CELL_HEIGHT).collect()
+        let height = |(index, rung)| self.scene(block, index, &views(rung), &style).height * figure::CELL_HEIGHT;
+        block.rungs.iter().enumerate().map(height).collect()
     }
 
     fn data(&self, label: &str, from: usize, count: usize) -> Option<DataView> {

@@ -138,6 +138,15 @@ pub struct RungView {
     pub shorts: Vec<(usize, usize)>,
 }
 
+/// Room for a value in a drawing, until a page shows the real one: as wide as most numbers become.
+const PLACE: &str = "......";
+
+/// The places for the values of a rung's instructions.
+fn places(views: &[InstructionView], number: usize, operand: usize) -> Option<String> {
+    let values = &views.get(number)?.values;
+    values.iter().any(|value| value.operand == operand).then(|| PLACE.to_owned())
+}
+
 impl RungView {
     fn new(rung: usize, scene: Scene, instructions: Vec<InstructionView>) -> RungView {
         // Every instruction gets a state, so that pages need only change it.

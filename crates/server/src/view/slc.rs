@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use analysis::search::{Query, search};
 use analysis::{CrossReference, TimerReport};
 use instr::{Drawing, Kind};
-use ladder::{Address, DataFile, FileType, Image, Instruction, Operand, Project, Target};
-use render::{Style, figure};
+use ladder::{Address, DataFile, FileType, Image, Instruction, Operand, ProgramFile, Project, Rung, Target};
+use render::scene::Scene;
+use render::{Live, Style, figure};
 
 use super::{
     DataFileView, DataView, ElementView, FlagView, HitView, HitsView, InstructionView, LISTED, Outline, PointView,
-    Program, RoutineView, RungView, TimerView, UseView, UsesView, ValueView,
+    Program, RoutineView, RungView, TimerView, UseView, UsesView, ValueView, places,
 };
 
 /// The main image of a project, with what is known about it.
@@ -41,6 +42,18 @@ impl SlcProgram {
             notes: read.chain(notes).collect(),
         };
         SlcProgram { image, xref, outline }
+    }
+
+    fn views(&self, rung: &Rung) -> Vec<InstructionView> {
+        rung.instructions().map(|it| instruction(self.image, it)).collect()
+    }
+
+    /// A rung with places for the values of its instructions. What RSLogix displayed when the project was saved is left
+    /// out: beside values of now it would be taken for one.
+    fn scene(&self, file: &ProgramFile, index: usize, views: &[InstructionView], width: usize) -> Scene {
+        let live = Live { value: &|number, operand| places(views, number, operand) };
+        let style = Style { values: false, ..Style::graphic(width) };
+        render::live_scene(self.image, file, index, &self.image.documentation, &style, &live)
     }
 
     fn documented(&self, address: &Address) -> (String, String) {
@@ -164,19 +177,15 @@ impl Program for SlcProgram {
 
     fn rung(&self, routine: u16, index: usize, width: usize) -> Option<RungView> {
         let file = self.image.ladder_files().find(|file| file.number == routine)?;
-        let rung = file.rungs.get(index)?;
-        let scene = render::scene(self.image, file, index, &self.image.documentation, &Style::graphic(width));
-        let all = rung.instructions().map(|it| instruction(self.image, it)).collect();
-        Some(RungView::new(index, scene, all))
+        let views = self.views(file.rungs.get(index)?);
+        let scene = self.scene(file, index, &views, width);
+        Some(RungView::new(index, scene, views))
     }
 
     fn heights(&self, routine: u16, width: usize) -> Vec<usize> {
         let Some(file) = self.image.ladder_files().find(|file| file.number == routine) else { return Vec::new() };
-        let height = |index| {
-            let style = Style::graphic(width);
-            render::scene(self.image, file, index, &self.image.documentation, &style).height * figure::CELL_HEIGHT
-        };
-        (0..file.rungs.len()).map(height).collect()
+        let height = |(index, rung)| self.scene(file, index, &self.views(rung), width).height * figure::CELL_HEIGHT;
+        file.rungs.iter().enumerate().map(height).collect()
     }
 
     fn data(&self, label: &str, from: usize, count: usize) -> Option<DataView> {
@@ -270,6 +279,15 @@ fn instruction(image: &Image, instruction: &Instruction) -> InstructionView {
             (_, _, Some(address)) if address.bit.is_none() => {
                 let address = Address { indexed: false, ..address }.to_string();
                 values.push(ValueView { address, operand: index, instead: false });
+            }
+            // Brackets are followed by the machine; what an index leads to depends on S:24 at that moment.
+            (_, _, None) => {
+                let address = operand.address().filter(|address| !address.indexed && address.bit.is_none());
+                values.extend(address.map(|address| ValueView {
+                    address: address.to_string(),
+                    operand: index,
+                    instead: false,
+                }));
             }
             _ => {}
         }
