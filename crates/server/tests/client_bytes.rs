@@ -1,13 +1,15 @@
-//! Bytes that no page sends: requests and messages damaged in all ways, always answered and never with a 5xx. The
+//! Bytes that no page sends: requests, messages and plant files damaged in all ways, always answered and never with a 5xx. The
 //! fuzz target `client` does the same without end.
 
 mod support;
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use ladder::Project;
+use server::plant::Plant;
 use server::view::SlcProgram;
-use server::workbench::{Slc, Workbench};
+use server::workbench::{Slc, Subject, Workbench};
 use server::{Offline, engine};
 
 const LADDER: &[&str] = &["XIC I:0.0/0 TON T4:0 0.01 100 0", "XIC T4:0/DN OTE O:0.0/0", "ADD N7:0 1 N7:1"];
@@ -25,6 +27,42 @@ const REQUESTS: &[(&str, &str)] = &[
     ("/api/record", r#"{"do": "expect", "addresses": ["N7:1", "T4:0/DN"]}"#),
     ("/api/trend", r#"{"addresses": ["T4:0.ACC"]}"#),
 ];
+
+/// Every kind of element, with every key.
+const PLANT: &str = r#"
+name = "all"
+[[motor]]
+name = "m"
+run = "O:0.0/0"
+feedback = "I:0.0/1"
+start_delay = "800ms"
+stop_delay = "1.5s"
+blocked = "B3:0/0"
+[[tank]]
+name = "t"
+level = "N7:0"
+range = 4095
+start = 40.0
+flows = [ { rate = 3.0 }, { when = "O:0.0/0", rate = -8.0 } ]
+switches = [ { at = 80.0, hysteresis = 2.0, input = "I:0.0/2", inverted = true } ]
+[[conveyor]]
+name = "c"
+run = "O:0.0/1"
+reverse = "O:0.0/2"
+length = 3.0
+speed = 0.5
+part = 0.2
+every = "2s"
+sensors = [ { at = 1.0, input = "I:0.0/3" } ]
+[[heater]]
+name = "h"
+on = "O:0.0/3"
+temperature = "N7:1"
+scale = 10
+ambient = 20.0
+rate = 3.0
+loss = 0.01
+"#;
 
 const SEEN: &str = r##"{"rungs": [[2, 0], [2, 65535]], "values": ["T4:0.ACC", "#N7:0", "S:1/5"]}"##;
 
@@ -121,5 +159,27 @@ fn every_request_is_answered_and_says_what_is_wrong() {
             }
         }
     }
+    let (mut read, mut wrong) = (0, 0);
+    for round in 0..4000 {
+        let text = [include_str!("../../../examples/batch/plant.toml"), PLANT][round % 2];
+        let text = String::from_utf8_lossy(&dice.damage(text)).into_owned();
+        match Plant::parse(&text) {
+            Ok(mut plant) => {
+                read += 1;
+                let mut machine = support::machine(LADDER);
+                machine.controller_mut().enter_run();
+                for _ in 0..3 {
+                    // Addresses that do not exist are told and stop nothing.
+                    let _ = plant.step(Duration::from_millis(10), &mut machine);
+                }
+                assert!(plant.gauges().iter().all(|gauge| gauge.value.is_finite()), "{text}");
+            }
+            Err(why) => {
+                wrong += 1;
+                assert!(!why.is_empty(), "{text}");
+            }
+        }
+    }
+    assert!(read > 200 && wrong > 200, "{read} read, {wrong} wrong");
     assert!(done > 100 && refused > 1000, "{done} done, {refused} refused");
 }
