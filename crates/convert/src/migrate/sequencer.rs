@@ -257,6 +257,11 @@ fn load(cx: &mut Context<'_>, e: &mut Emitter, i: &Instruction) -> Converted {
         if value.is_float() || !value.fits(Width::Word) {
             return Err(Person::new(Mark::Files, "SQL of other than words"));
         }
+        let stepped = source.address().is_some_and(|address| address.indexed);
+        if start.block == Block::D && stepped && value.width == Width::Word {
+            // Whether the sign of a word goes with it is not documented.
+            return Err(Person::new(Mark::Files, "a sequencer that steps through words and long words"));
+        }
         let text = entry(&start, &position, &file.to_string())?;
         e.math(&text.replace(' ', ""), value.text());
         Ok(())
