@@ -6,7 +6,7 @@ use rungs_tests::browser::{Browser, key};
 use super::support::*;
 
 /// Every view that the address bar can name.
-const VIEWS: &[&str] = &[
+pub(crate) const VIEWS: &[&str] = &[
     "ladder/2",
     "data/T4",
     "data/B3",
