@@ -239,6 +239,15 @@ fn text_of_twice_the_size_loses_nothing() {
     browser.run("document.documentElement.style.fontSize = '200%'");
     // Drawings grow with the text, and are laid out anew for the room there is.
     browser.wait_for("document.querySelector('svg.rung')?.getBoundingClientRect().height > 2 * 16 * 5");
+    assert!(
+        browser.is(
+            "[...document.querySelectorAll('svg.rung text')].every(one => getComputedStyle(one).fontSize === '13px')"
+        ),
+        "texts of a drawing fill their lines and no more"
+    );
+    // A drawing of the fewest columns may be wider than what is left; it is no wider than that.
+    browser
+        .wait_for("[...document.querySelectorAll('svg.rung')].every(one => one.viewBox.baseVal.width <= 60 * 8 + 40)");
     browser.screenshot("workbench-large-text");
     browser.click("#step");
     browser.wait_for("document.querySelector('#status').textContent.includes('scan 6 ')");
