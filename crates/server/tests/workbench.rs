@@ -260,6 +260,38 @@ fn a_recording_replays_on_a_fresh_machine() {
     assert_eq!(report.failures.len(), 1);
 }
 
+#[test]
+fn what_is_written_in_program_mode_meets_the_prescan_of_the_replay_too() {
+    let mut bench = bench();
+    bench.record().expect("begins");
+    bench.change(Change::Mode(ModeChange::Program)).expect("can");
+    set(&mut bench, "T4:0.ACC", 37);
+    set(&mut bench, "I:0.0/0", 1);
+    bench.change(Change::Mode(ModeChange::Run)).expect("can");
+    set(&mut bench, "C5:0.ACC", 2);
+    scans(&mut bench, 3);
+    bench.expect(&["T4:0.ACC".to_owned(), "C5:0.ACC".to_owned()]).expect("recording");
+    set(&mut bench, "T4:0.ACC", 37);
+    bench.change(Change::Mode(ModeChange::PowerCycle)).expect("can");
+    scans(&mut bench, 3);
+    bench.expect(&["T4:0.ACC".to_owned()]).expect("recording");
+    let (text, problems) = bench.recorded(&Recorded::default()).expect("recording");
+    let replayed: Vec<&String> = problems.iter().filter(|problem| problem.starts_with("replayed")).collect();
+    assert!(replayed.is_empty(), "{replayed:?} {text}");
+}
+
+#[test]
+fn the_key_does_nothing_where_it_stands_already() {
+    let mut bench = bench();
+    set(&mut bench, "I:0.0/0", 1);
+    scans(&mut bench, 5);
+    let before = read(&bench, "T4:0.ACC");
+    bench.change(Change::Mode(ModeChange::Run)).expect("can");
+    assert_eq!(read(&bench, "T4:0.ACC"), before, "no prescan");
+    scans(&mut bench, 1);
+    assert_eq!((before, read(&bench, "T4:0.ACC")), (Value::Word(4), Value::Word(5)), "and time goes on");
+}
+
 fn forced(bench: &mut Workbench, address: &str, state: Option<bool>) {
     bench.change(Change::Force { address: address.to_owned(), state }).expect(address);
 }

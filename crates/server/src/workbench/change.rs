@@ -54,3 +54,15 @@ pub enum ModeChange {
     /// Power is lost and comes back.
     PowerCycle,
 }
+
+impl ModeChange {
+    /// The mode it leads to, as a machine tells it; a power cycle leads to none of its own.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            ModeChange::Program => Some("program"),
+            ModeChange::Run => Some("run"),
+            ModeChange::Test => Some("test"),
+            ModeChange::PowerCycle => None,
+        }
+    }
+}

@@ -16,6 +16,7 @@ pub mod trend;
 
 use std::time::Duration;
 
+use analysis::proof::AnySide;
 use sim::scenario::{Literal, Scenario, play, value_for};
 
 use crate::plant::Plant;
@@ -200,6 +201,12 @@ impl Workbench {
         if self.tape.is_some() {
             return Err("a tape is being played: it must be left before anything is changed by hand".to_owned());
         }
+        // The key already stands there.
+        if let Change::Mode(mode) = &change
+            && mode.name() == Some(self.state.machine.mode())
+        {
+            return Ok(());
+        }
         if let Change::Write { address, .. } | Change::Force { address, .. } = &mut change {
             *address = self.state.machine.changeable(address)?;
         }
@@ -369,7 +376,8 @@ impl Workbench {
     pub fn record(&mut self) -> Result<(), String> {
         self.restart()?;
         self.change(Change::Mode(ModeChange::Run))?;
-        self.recorder = Some(Recorder::default());
+        // Of two programs the original is recorded, which is one of RSLogix 500.
+        self.recorder = Some(Recorder::new(!matches!(self.state.machine.side(), Some(AnySide::DoMore(_)))));
         Ok(())
     }
 

@@ -27,6 +27,8 @@ pub struct Recorder {
     notes: Vec<String>,
     /// Points that were forced, by name: a forced input is recorded as written.
     forced: BTreeSet<String>,
+    /// Entering run changes data: what was written before must be written before it.
+    prescan: bool,
     full: bool,
 }
 
@@ -53,15 +55,22 @@ pub struct Subject {
 }
 
 impl Recorder {
+    /// A recording of a controller that has a prescan, as SLC and MicroLogix have, or of one that has none.
+    pub fn new(prescan: bool) -> Recorder {
+        Recorder { prescan, ..Recorder::default() }
+    }
+
     /// A change was made before the next scan.
     pub fn changed(&mut self, change: &Change) {
         self.full |= self.sets >= SETS;
         if self.full {
             return;
         }
-        let before = self.scans() > 0;
-        // A change behind an expectation is another step, as one behind a scan.
-        let begun = self.steps.last().is_some_and(|step| step.scans == 0 && step.expect.is_empty());
+        // A change behind an expectation is another step, as one behind a scan. A step enters run before it writes, so run
+        // behind something written is another one too, where a prescan would change that.
+        let enters = self.prescan && matches!(change, Change::Mode(ModeChange::Run | ModeChange::PowerCycle));
+        let begun = |step: &Step| step.scans == 0 && step.expect.is_empty() && !(enters && !step.sets.is_empty());
+        let begun = self.steps.last().is_some_and(begun);
         if !begun {
             if self.steps.len() == STEPS {
                 self.full = true;
@@ -76,7 +85,7 @@ impl Recorder {
                 step.sets.push((address.clone(), value.clone()));
                 self.sets += 1;
             }
-            Change::Mode(ModeChange::Run) => step.program_run = before,
+            Change::Mode(ModeChange::Run) => step.program_run = true,
             // What a plant writes is recorded as written.
             Change::Mode(ModeChange::Program) | Change::Plant(_) => {}
             Change::Mode(ModeChange::Test) => self.note("test mode: a scenario runs in run mode"),
