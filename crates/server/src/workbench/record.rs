@@ -69,7 +69,7 @@ impl Recorder {
         // A change behind an expectation is another step, as one behind a scan. A step enters run before it writes, so run
         // behind something written is another one too, where a prescan would change that.
         let enters = self.prescan && matches!(change, Change::Mode(ModeChange::Run | ModeChange::PowerCycle));
-        let begun = |step: &Step| step.scans == 0 && step.expect.is_empty() && !(enters && !step.sets.is_empty());
+        let begun = |step: &Step| step.scans == 0 && step.expect.is_empty() && (!enters || step.sets.is_empty());
         let begun = self.steps.last().is_some_and(begun);
         if !begun {
             if self.steps.len() == STEPS {
