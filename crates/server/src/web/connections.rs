@@ -47,6 +47,8 @@ pub struct Limits {
     pub deaf: Duration,
     /// Without a word on a WebSocket; pages answer a ping that comes three times as often by themselves.
     pub silent: Duration,
+    /// Messages on one WebSocket in ten seconds.
+    pub messages: u32,
 }
 
 impl Default for Limits {
@@ -59,6 +61,8 @@ impl Default for Limits {
             body: Duration::from_secs(15),
             deaf: Duration::from_secs(30),
             silent: Duration::from_secs(60),
+            // One for every picture of a page that is scrolled, and as many again.
+            messages: 1200,
         }
     }
 }

@@ -33,8 +33,7 @@ const MESSAGE: usize = 256 << 10;
 /// Browsers at once.
 pub(super) const BROWSERS: usize = 200;
 
-/// Messages of one browser in [`WINDOW`]: one for every picture of a page that is scrolled, and as many again.
-const MESSAGES: u32 = 1200;
+/// Messages of a browser are counted in it.
 const WINDOW: Duration = Duration::from_secs(10);
 
 /// What a browser shows.
@@ -135,8 +134,8 @@ async fn follow(
                     window = (heard, 0);
                 }
                 window.1 += 1;
-                if window.1 > MESSAGES {
-                    return part(&mut socket, format!("more than {MESSAGES} messages in {WINDOW:?}")).await;
+                if window.1 > served.messages {
+                    return part(&mut socket, format!("more than {} messages in {WINDOW:?}", served.messages)).await;
                 }
                 match message {
                     Some(Ok(Message::Text(text))) => match serde_json::from_str::<Object<See>>(&text) {

@@ -46,6 +46,8 @@ pub(crate) struct Served {
     token: bool,
     /// How long a WebSocket may be silent.
     silent: Duration,
+    /// How many messages a WebSocket may send in ten seconds.
+    messages: u32,
     /// Tells this run of the server from others, so that a page sees that it was started again.
     server: Arc<str>,
     /// What pages show of two programs side by side.
@@ -63,6 +65,7 @@ impl Served {
             read_only: access.read_only,
             token: access.token.is_some(),
             silent: access.limits.silent,
+            messages: access.limits.messages,
             server: format!("{:016x}", RandomState::new().build_hasher().finish()).into(),
             pair,
             prefix: "",
