@@ -10,7 +10,7 @@
 mod do_more;
 
 use instr::Kind;
-use ladder::{Address, Documentation, Image, Instruction, Number, Operand, Value};
+use ladder::{Address, Documentation, Image, Instruction, Number, Operand, Target, Value};
 use regex::{Regex, RegexBuilder};
 
 use crate::checks::context_form;
@@ -59,6 +59,32 @@ pub struct Hit {
     pub kind: &'static str,
     /// The instruction, address or text.
     pub text: String,
+    /// What documentation without a rung is about; `None` where that is nothing one could look at.
+    pub about: Option<About>,
+}
+
+/// What documentation can be about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum About {
+    /// An address of the data table, an element of Do-more.
+    Address(String),
+    /// A program file by its number, a code block by its place in the text, from 1.
+    ProgramFile(u16),
+    /// A data file by its number.
+    DataFile(u16),
+}
+
+impl About {
+    fn of(target: &Target) -> Option<About> {
+        Some(match target {
+            Target::Address(address) => About::Address(address.to_string()),
+            Target::ProgramFileOperand(file) | Target::ProgramFile(file) | Target::Label { file, .. } => {
+                About::ProgramFile(*file)
+            }
+            Target::DataFile(file) => About::DataFile(*file),
+            Target::Unassigned | Target::Other(_) => return None,
+        })
+    }
 }
 
 /// What a search found.
@@ -73,7 +99,16 @@ pub struct Hits {
 impl Hits {
     fn add(&mut self, location: Option<Location>, kind: &'static str, text: impl FnOnce() -> String) {
         if self.list.len() < MAX_HITS {
-            self.list.push(Hit { location, kind, text: text() });
+            self.list.push(Hit { location, kind, text: text(), about: None });
+        } else {
+            self.not_listed += 1;
+        }
+    }
+
+    /// Documentation that belongs to no rung.
+    fn add_about(&mut self, about: Option<About>, kind: &'static str, text: impl FnOnce() -> String) {
+        if self.list.len() < MAX_HITS {
+            self.list.push(Hit { location: None, kind, text: text(), about });
         } else {
             self.not_listed += 1;
         }
@@ -148,7 +183,9 @@ fn texts(
 ) {
     for file in image.ladder_files() {
         if is(&file.name) || is(&file.description) {
-            hits.add(None, "program file", || format!("{} {} {}", file.number, file.name, file.description));
+            hits.add_about(Some(About::ProgramFile(file.number)), "program file", || {
+                format!("{} {} {}", file.number, file.name, file.description)
+            });
         }
         for (number, rung) in (0..).zip(&file.rungs) {
             let at = Location { file: file.number, rung: number, instruction: 0 };
@@ -172,25 +209,31 @@ fn texts(
     }
     for entry in documentation.entries() {
         if is(&entry.symbol) {
-            hits.add(None, "symbol", || format!("{} {}", entry.target, entry.symbol));
+            hits.add_about(About::of(&entry.target), "symbol", || format!("{} {}", entry.target, entry.symbol));
         }
         let description = entry.description.join(" ");
         if is(&description) {
-            hits.add(None, "description", || format!("{} {} {description}", entry.target, entry.symbol));
+            hits.add_about(About::of(&entry.target), "description", || {
+                format!("{} {} {description}", entry.target, entry.symbol)
+            });
         }
     }
     for comment in documentation.instruction_comments() {
         let text = comment.lines.join(" ");
         if is(&text) {
             let target = comment.target.as_ref().map(ToString::to_string).unwrap_or_default();
-            hits.add(None, "instruction comment", || format!("{} {target} {text}", comment.mnemonic));
+            hits.add_about(comment.target.as_ref().and_then(About::of), "instruction comment", || {
+                format!("{} {target} {text}", comment.mnemonic)
+            });
         }
     }
     for comment in documentation.detached_comments.iter().filter(|it| is(&it.text) || is(&it.title)) {
         hits.add(None, "detached comment", || format!("{} {}", comment.title, comment.text));
     }
     for file in image.data_files.iter().filter(|file| is(&file.name) || is(&file.description)) {
-        hits.add(None, "data file", || format!("{} {} {}", file.label(), file.name, file.description));
+        hits.add_about(Some(About::DataFile(file.number)), "data file", || {
+            format!("{} {} {}", file.label(), file.name, file.description)
+        });
     }
 }
 

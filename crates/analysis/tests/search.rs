@@ -1,6 +1,6 @@
 //! Search over both dialects: what each kind of query finds, and what it does not.
 
-use analysis::search::{Hits, MAX_HITS, Query, search, search_domore};
+use analysis::search::{About, Hits, MAX_HITS, Query, search, search_domore};
 use ladder::{AddressEntry, Comment, CommentOwner, Documentation, Element, Image, Target, Value};
 
 mod support;
@@ -103,6 +103,9 @@ fn texts_are_found_in_comments_symbols_and_descriptions() {
     assert_eq!(found("filling"), ["2:1.0 title Filling", "2:1.0 comment Wait for the filling pump"]);
     assert_eq!(found("recipe number"), Vec::<String>::new());
     assert_eq!(found("RECI"), ["- symbol N7:1 RECIPE", "- description N7:1 RECIPE number of the recipe"]);
+    let about: Vec<_> =
+        search(&program(), &documentation(), &Query::new("RECI")).list.into_iter().map(|hit| hit.about).collect();
+    assert_eq!(about, vec![Some(About::Address("N7:1".to_owned())); 2]);
     // A text that begins like an instruction.
     let mut image = program();
     if let Some(rung) = image.program_files.first_mut().and_then(|file| file.rungs.first_mut()) {

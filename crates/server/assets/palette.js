@@ -25,10 +25,17 @@ export function palette(app) {
     list.replaceChildren(...items);
     choose(0);
   };
-  const item = (text, kind, open) => el("li", { role: "option", on: { click: () => {
+  const item = (text, kind, open) => el("li", { role: "option", ariaDisabled: open ? null : "true", on: { click: () => {
+    if (!open) return;
     dialog.close();
     open();
   } } }, el("span", { class: "kind" }, kind), el("span", {}, text));
+  /** Where a hit leads; a text that belongs to nothing in the program leads nowhere. */
+  const leads = (side, { routine, rung, address, data }) => {
+    if (routine !== null) return () => side.goto(routine, rung ?? 0);
+    if (address !== null) return () => side.open(address);
+    return data !== null && side === app ? () => app.goView(`data/${encodeURIComponent(data)}`) : null;
+  };
   const look = async () => {
     const mine = ++asked;
     const text = input.value.trim();
@@ -53,7 +60,7 @@ export function palette(app) {
       const name = side === app ? "" : `${side.project.file}, `;
       for (const hit of found.hits.slice(0, 100)) {
         const where = hit.rung === null ? name : `${name}${side.routineName(hit.routine)} rung ${hit.rung}: `;
-        items.push(item(where + hit.text, hit.kind, () => (hit.rung === null ? side.open(hit.text) : side.goto(hit.routine, hit.rung))));
+        items.push(item(where + hit.text, hit.kind, leads(side, hit)));
       }
       const more = found.hits.length - 100 + found.left_out;
       if (more > 0) items.push(note(`${name}${more} more; search for something narrower`));

@@ -45,8 +45,12 @@ function extent(nodes) {
   return xs.length && ys.length ? [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)] : null;
 }
 
-/** What a word in a box can be the address of. */
-const isAddress = (text) => /^[A-Za-z_$#][\w$#:./[\]-]*$/.test(text ?? "");
+/** What a word in a box can be the address of; labels are none. */
+const isAddress = (text) => /^[A-Za-z_$#][\w$#:./[\]-]*$/.test(text ?? "") && !/^Q\d+:\d+$/.test(text);
+
+/** The program file (`U:3`) or code block (its name) an operand is, or nothing. */
+const called = (app, text) => app.project.routines.find(({ number, title }) =>
+  (app.project.dialect === "slc" ? text === `U:${number}` : text && title.endsWith(` ${text}`)));
 
 export class Rung {
   #bits = null;
@@ -199,8 +203,10 @@ export class Rung {
 
   #uses(part, target) {
     const operand = part.instruction.operands[Number(target.dataset.o ?? 0)];
+    const routine = called(this.app, operand);
     const address = isAddress(operand) ? operand : part.bit;
-    if (address) this.app.open(address);
+    if (routine) this.app.goto(routine.number, 0);
+    else if (address) this.app.open(address);
     else this.menu(part);
   }
 
@@ -215,8 +221,11 @@ export class Rung {
   /** Everything that can be done with an instruction. */
   menu(part) {
     const { bit, forcible, values, operands, mnemonic } = part.instruction;
-    const addresses = operands.filter((text) => isAddress(text) && !/^(0x)?[\dA-F]+h$/i.test(text));
-    const items = actions(this.app, { bit, forcible, addresses, values: values.map((one) => one.address) }, (address) => this.edit(part, address));
+    const { app } = this;
+    const to = operands.map((text) => called(app, text)).filter(Boolean);
+    const addresses = operands.filter((text) => isAddress(text) && !/^U:\d+$/.test(text) && !called(app, text) && !/^(0x)?[\dA-F]+h$/i.test(text));
+    const items = actions(app, { bit, forcible, addresses, values: values.map((one) => one.address) }, (address) => this.edit(part, address));
+    items.unshift(...to.map(({ number }) => [`Go to ${app.routineName(number)}`, () => app.goto(number, 0)]));
     if (items.length) menu(part.node, `${mnemonic} ${operands[0] ?? ""}`.trim(), items);
   }
 

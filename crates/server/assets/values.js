@@ -31,8 +31,8 @@ export function typed(text) {
   const plain = text.trim();
   if (/^[0-9a-f]+h$/i.test(plain)) return "0x" + plain.slice(0, -1);
   if (/^([01]{4}( [01]{4})+|[01]{16}|[01]{32})$/.test(plain)) {
-    const word = Number.parseInt(plain.replaceAll(" ", ""), 2);
-    return word > 32767 && word < 65536 ? word - 65536 : word;
+    // As hex, because digits of bits say nothing of a sign.
+    return "0x" + Number.parseInt(plain.replaceAll(" ", ""), 2).toString(16);
   }
   if (plain !== "" && !/^0x/i.test(plain) && Number.isFinite(Number(plain))) return Number(plain);
   return text;

@@ -160,6 +160,40 @@ fn search_leads_to_uses_and_rungs() {
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
+/// Documentation leads to what it is about, a call to what it calls.
+#[test]
+fn what_is_found_and_what_is_called_can_be_gone_to() {
+    let Some(browser) = Browser::start() else { return };
+    let page = serve(slc(Path::new(&format!("{EXAMPLES}batch/batch.RSS"))), None);
+    show(&browser, &page, "ladder/2");
+    for (text, kind, arrived) in [
+        ("box has left", "description", "document.querySelector('#detail h2')?.textContent === 'I:0.0/3'"),
+        ("ox_left", "symbol", "document.querySelector('#detail h2')?.textContent === 'I:0.0/3'"),
+        ("fill", "program file", "location.hash === '#ladder/3/0'"),
+        ("binary", "data file", "location.hash === '#data/B3'"),
+    ] {
+        browser.click("#search-button");
+        browser.wait_for("document.querySelector('#palette').open");
+        browser.run(
+            "const one = document.querySelector('#palette input'); one.value = ''; one.dispatchEvent(new Event('input'))",
+        );
+        browser.keys(text);
+        let item = format!(
+            "[...document.querySelectorAll('#palette li')].find((one) => one.firstChild.textContent === '{kind}')"
+        );
+        browser.wait_for(&item);
+        browser.run(&format!("{item}.click()"));
+        browser.wait_for(arrived);
+    }
+    show(&browser, &page, "ladder/2");
+    browser.wait_for("document.querySelector('g.i .frame')");
+    let operand = "[...document.querySelectorAll('#view text.operand')].find((one) => one.textContent === 'U:3')";
+    browser.wait_for(operand);
+    browser.run(&format!("{operand}.dispatchEvent(new MouseEvent('click', {{ bubbles: true }}))"));
+    browser.wait_for("location.hash === '#ladder/3/0'");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
 #[test]
 fn two_pages_see_one_truth() {
     let (Some(one), Some(two)) = (Browser::start(), Browser::start()) else { return };

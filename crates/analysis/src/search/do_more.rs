@@ -8,7 +8,7 @@ use domore::instruction::by_mnemonic;
 use domore::xref::{Area, CrossReference};
 use domore::{Instruction, Project};
 
-use super::{Hits, Pattern, Query, Test, like};
+use super::{About, Hits, Pattern, Query, Test, like};
 use crate::Location;
 
 /// Searches a Do-more program.
@@ -99,7 +99,9 @@ fn addresses(project: &Project, text: &str, hits: &mut Hits) -> bool {
 fn texts(project: &Project, with_instructions: bool, is: &dyn Fn(&str) -> bool, hits: &mut Hits) {
     for (file, block) in blocks(project) {
         if is(&block.name) {
-            hits.add(None, "code block", || format!("{} {}", block.kind.title(), block.name));
+            hits.add_about(Some(About::ProgramFile(file)), "code block", || {
+                format!("{} {}", block.kind.title(), block.name)
+            });
         }
         for (rung, content) in (0..).zip(&block.rungs) {
             let at = Location { file, rung, instruction: 0 };
@@ -121,11 +123,15 @@ fn texts(project: &Project, with_instructions: bool, is: &dyn Fn(&str) -> bool, 
     }
     for entry in project.documentation() {
         if is(&entry.nickname) {
-            hits.add(None, "nickname", || format!("{} {}", entry.element, entry.nickname));
+            hits.add_about(Some(About::Address(entry.element.to_string())), "nickname", || {
+                format!("{} {}", entry.element, entry.nickname)
+            });
         }
         let description = entry.lines().join(" ");
         if is(&description) {
-            hits.add(None, "description", || format!("{} {} {description}", entry.element, entry.nickname));
+            hits.add_about(Some(About::Address(entry.element.to_string())), "description", || {
+                format!("{} {} {description}", entry.element, entry.nickname)
+            });
         }
     }
     for block in project.memory().filter(|block| is(&block.name)) {

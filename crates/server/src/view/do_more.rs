@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use analysis::search::{Query, search_domore};
+use analysis::search::{About, Query, search_domore};
 use domore::documentation::Documentation;
 use domore::instruction::{self, Effect, Kind};
 use domore::memory::{ElementType, Map};
@@ -246,12 +246,22 @@ impl Program for DoMoreProgram {
 
     fn search(&self, text: &str) -> Result<HitsView, String> {
         let found = search_domore(self.project, &Query::new(text));
-        let hits = found.list.iter().take(LISTED).map(|hit| HitView {
-            // Code blocks count from 1 there.
-            routine: hit.location.map(|location| location.file.saturating_sub(1)),
-            rung: hit.location.map(|location| location.rung as usize),
-            kind: hit.kind.to_owned(),
-            text: hit.text.clone(),
+        let hits = found.list.iter().take(LISTED).map(|hit| {
+            let (mut block, mut address) = (hit.location.map(|location| location.file), None);
+            match &hit.about {
+                Some(About::ProgramFile(place)) => block = Some(*place),
+                Some(About::Address(about)) => address = Some(about.clone()),
+                Some(About::DataFile(_)) | None => {}
+            }
+            HitView {
+                // Code blocks count from 1 there.
+                routine: block.map(|block| block.saturating_sub(1)),
+                rung: hit.location.map(|location| location.rung as usize),
+                kind: hit.kind.to_owned(),
+                text: hit.text.clone(),
+                address,
+                data: None,
+            }
         });
         let left_out = found.list.len().saturating_sub(LISTED) + found.not_listed;
         Ok(HitsView { named: None, hits: hits.collect(), left_out })

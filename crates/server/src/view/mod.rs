@@ -288,6 +288,10 @@ pub struct HitView {
     pub kind: String,
     /// The text found.
     pub text: String,
+    /// The address it is about, of documentation.
+    pub address: Option<String>,
+    /// Label of the data file it is about.
+    pub data: Option<String>,
 }
 
 /// Uses and hits that are listed.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use analysis::search::{Query, search};
+use analysis::search::{About, Query, search};
 use analysis::{CrossReference, TimerReport};
 use instr::{Drawing, Kind};
 use ladder::{Address, DataFile, FileType, Image, Instruction, Operand, ProgramFile, Project, Rung, Target};
@@ -240,11 +240,18 @@ impl Program for SlcProgram {
 
     fn search(&self, text: &str) -> Result<HitsView, String> {
         let found = search(self.image, &self.image.documentation, &Query::new(text));
-        let hits = found.list.iter().take(LISTED).map(|hit| HitView {
-            routine: hit.location.map(|location| location.file),
-            rung: hit.location.map(|location| location.rung as usize),
-            kind: hit.kind.to_owned(),
-            text: hit.text.clone(),
+        let ladder = |number: &u16| self.outline.routines.iter().any(|routine| routine.number == *number);
+        let label = |number: u16| files(self.image).find(|file| file.number == number).map(DataFile::label);
+        let hits = found.list.iter().take(LISTED).map(|hit| {
+            let (mut routine, mut address, mut data) = (hit.location.map(|location| location.file), None, None);
+            match &hit.about {
+                Some(About::ProgramFile(number)) => routine = Some(*number).filter(ladder),
+                Some(About::Address(about)) => address = Some(about.clone()),
+                Some(About::DataFile(number)) => data = label(*number),
+                None => {}
+            }
+            let rung = hit.location.map(|location| location.rung as usize);
+            HitView { routine, rung, kind: hit.kind.to_owned(), text: hit.text.clone(), address, data }
         });
         let left_out = found.list.len().saturating_sub(LISTED) + found.not_listed;
         Ok(HitsView { named: None, hits: hits.collect(), left_out })
