@@ -281,6 +281,18 @@ fn what_is_written_in_program_mode_meets_the_prescan_of_the_replay_too() {
 }
 
 #[test]
+fn a_number_that_would_become_another_one_is_refused() {
+    let mut bench = bench();
+    let why = bench.write("N7:0", &Literal::Integer(40_000)).expect_err("a word ends at 32767");
+    assert!(why.contains("-32768 to 32767") && why.contains("40000"), "{why}");
+    assert_eq!(read(&bench, "N7:0"), Value::Word(0));
+    // Who spells bits means bits.
+    bench.write("N7:0", &Literal::Text("0x9C40".to_owned())).expect("hex");
+    assert_eq!(read(&bench, "N7:0"), Value::Word(-25_536));
+    set(&mut bench, "N7:0", -32_768);
+}
+
+#[test]
 fn the_key_does_nothing_where_it_stands_already() {
     let mut bench = bench();
     set(&mut bench, "I:0.0/0", 1);

@@ -17,6 +17,7 @@ pub mod trend;
 use std::time::Duration;
 
 use analysis::proof::AnySide;
+use ladder::Value;
 use sim::scenario::{Literal, Scenario, play, value_for};
 
 use crate::plant::Plant;
@@ -229,6 +230,7 @@ impl Workbench {
     pub fn write(&mut self, address: &str, literal: &Literal) -> Result<(), String> {
         let present = self.state.machine.controller().read(address)?;
         let value = value_for(literal, &present)?;
+        kept(literal, &value)?;
         self.change(Change::Write { address: address.to_owned(), value })
     }
 
@@ -419,5 +421,26 @@ impl Workbench {
             },
         }
         Ok((text, problems))
+    }
+}
+
+/// A person must find there what was typed: numbers that a word or float would hold as another one are refused. Scenarios
+/// may spell the bits of a word without a sign, and a person can in hex.
+fn kept(literal: &Literal, value: &Value) -> Result<(), String> {
+    let integer = |least: i64, most: i64, held: i64| match literal {
+        Literal::Integer(typed) if *typed != held => {
+            Err(format!("expected a whole number from {least} to {most}, or bits in hex, found {typed}"))
+        }
+        _ => Ok(()),
+    };
+    match value {
+        Value::Word(word) => integer(i16::MIN.into(), i16::MAX.into(), (*word).into()),
+        Value::Long(long) => integer(i32::MIN.into(), i32::MAX.into(), (*long).into()),
+        Value::Float(float) if float.is_infinite() => match literal {
+            Literal::Float(typed) if typed.is_infinite() => Ok(()),
+            Literal::Text(typed) if typed.to_ascii_lowercase().contains("inf") => Ok(()),
+            _ => Err(format!("expected a number from {:?} to {:?}, found {literal}", f32::MIN, f32::MAX)),
+        },
+        _ => Ok(()),
     }
 }
