@@ -25,7 +25,12 @@ pub(super) struct Entry<B> {
     depth: usize,
     /// How often it was gone on from.
     used: u32,
+    standing: Vec<Standing>,
 }
+
+/// A timer that is timing and yet does not count, since nothing executes it: its accumulated value, and for how
+/// many microseconds.
+type Standing = (u16, u64);
 
 /// How a goal was reached for the first time.
 #[derive(Clone)]
@@ -84,6 +89,10 @@ pub(crate) struct Campaign<'c, B: Side> {
     flags: Vec<(u32, u16)>,
     /// What these were in states seen so far, hashed.
     met: HashSet<u64>,
+    /// Each of the timers.
+    standing: Vec<Standing>,
+    /// One of them has stood too long for a conversion to count: nothing follows from this stretch any more.
+    lapsed: bool,
     /// A machine to look ahead with.
     pub(super) probe: Slc,
     quiet: u64,
@@ -105,6 +114,11 @@ const FIRST_ARGUMENT: u64 = 8;
 const DEEPEST: usize = 30_000;
 /// Times before a scan that are tried, in milliseconds.
 pub(super) const PACES: [u32; 5] = [1, 7, 10, 13, 50];
+/// Longest time a timer that is timing may not be executed, in microseconds: conversions count it modulo a thousand
+/// million milliseconds.
+const LONGEST_STANDING: u64 = 990_000_000_000;
+/// Time before a scan from which on timers that stand are looked at: shorter ones make no days.
+const LONG_PACE: u32 = 60_000_000;
 /// Scans to an instruction that are repeated.
 const LONGEST_RECIPE: usize = 2500;
 /// States kept because their bits are new.
@@ -162,6 +176,8 @@ impl<'c, B: Side> Campaign<'c, B> {
             recipes: Vec::new(),
             flags,
             met: HashSet::new(),
+            standing: Vec::new(),
+            lapsed: false,
             probe,
             quiet: 0,
             looks: false,
@@ -196,6 +212,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             match round % 8 {
                 _ if round % 24 == 6 => self.reach_boundary(),
                 _ if matches!(round % 24, 13 | 15 | 21) => self.exercise(),
+                _ if matches!(round % 24, 2 | 10) => self.at_eve(),
                 0..3 => self.aim(),
                 3 if self.random.chance(2, 3) => self.reach_preset(),
                 3 => self.wait_long(),
@@ -244,7 +261,7 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     /// Both sides are scanning and nothing was found.
     pub(super) fn goes_on(&self) -> bool {
-        self.open() && self.both.a.stopped().is_none()
+        self.open() && !self.lapsed && self.both.a.stopped().is_none()
     }
 
     /// Starts an episode from a state seen before, newer and less used ones more often.
@@ -269,13 +286,7 @@ impl<'c, B: Side> Campaign<'c, B> {
                 best = candidate;
             }
         }
-        if let Some(entry) = self.corpus.get_mut(best) {
-            entry.used += 1;
-            self.both.copy_from(&entry.both);
-        }
-        self.from = best;
-        self.tape.clear();
-        self.pending.clear();
+        self.begin_at(best);
         let pace = self.random.pick(&PACES).copied().unwrap_or(10);
         self.pace = pace * 1000;
     }
@@ -285,10 +296,11 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.goals.fresh.clear();
         let base = self.corpus.get(self.from).map_or(0, |entry| entry.depth);
         let depth = base + self.tape.len();
-        if self.corpus.len() >= MOST_ENTRIES || depth > DEEPEST || self.both.a.stopped().is_some() {
+        if self.corpus.len() >= MOST_ENTRIES || depth > DEEPEST || self.lapsed || self.both.a.stopped().is_some() {
             return;
         }
-        let entry = Entry { both: self.both.fork(), parent: self.from, tape: self.tape.clone(), depth, used: 0 };
+        let (both, tape, standing) = (self.both.fork(), self.tape.clone(), self.standing.clone());
+        let entry = Entry { both, parent: self.from, tape, depth, used: 0, standing };
         self.from = self.corpus.len();
         self.corpus.push(entry);
         self.tape.clear();
@@ -301,6 +313,9 @@ impl<'c, B: Side> Campaign<'c, B> {
 
     /// One scan of both sides with the pending changes, and the comparison.
     pub(super) fn scan(&mut self, program_run: bool, dt: u32) {
+        if self.lapsed {
+            return;
+        }
         let dt = if program_run { 0 } else { dt.min(if self.short { SHORT_PACE } else { u32::MAX }) };
         for set in self.pending.drain(..) {
             let written = self.inputs.all.get(usize::from(set.0)).is_some_and(|input| input.written);
@@ -339,6 +354,9 @@ impl<'c, B: Side> Campaign<'c, B> {
             self.found = Some((difference, tape));
             return;
         }
+        if dt >= LONG_PACE {
+            self.look_at_standing(dt);
+        }
         if self.both.a.stopped().is_some() {
             match self.both.b.stopped() {
                 Some(_) => self.stops += 1,
@@ -358,6 +376,18 @@ impl<'c, B: Side> Campaign<'c, B> {
         }
         if self.is_new() || fresh {
             self.keep();
+        }
+    }
+
+    /// Adds a long scan to the time of timers that are timing but not executed.
+    fn look_at_standing(&mut self, dt: u32) {
+        self.standing.resize(self.presets.len(), (0, 0));
+        for ((preset, _), (before, time)) in self.presets.iter().zip(&mut self.standing) {
+            let now = self.both.a.word(preset + 16);
+            let stands = now == *before && self.both.a.word(preset - 16) & TIMING != 0;
+            *time = if stands { *time + u64::from(dt) } else { 0 };
+            *before = now;
+            self.lapsed |= *time > LONGEST_STANDING;
         }
     }
 
@@ -388,6 +418,8 @@ impl<'c, B: Side> Campaign<'c, B> {
         let Some(entry) = self.corpus.get_mut(index) else { return false };
         entry.used += 1;
         self.both.copy_from(&entry.both);
+        self.standing.clone_from(&entry.standing);
+        self.lapsed = false;
         self.from = index;
         self.tape.clear();
         self.pending.clear();

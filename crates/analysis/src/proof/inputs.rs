@@ -153,6 +153,20 @@ impl<T: Clone> Inputs<T> {
             let other = pairs.other(at, kind);
             inputs.add(a, b, (text, other), (at, kind), values, limit.is_some(), false);
         }
+        // Steps of sequencers that nothing in the program writes.
+        for address in steps(image) {
+            let text = address.to_string();
+            let writes = xref.of(&address).iter().any(|access| access.role.writes());
+            if let Ok((at, Kind::Word)) = a.place(&text)
+                && !writes
+                && seen.insert((at, Kind::Word))
+            {
+                let mut values = edges(Kind::Word);
+                values.push(stored(a, at, Kind::Word));
+                let other = pairs.other(at, Kind::Word);
+                inputs.add(a, b, (text, other), (at, Kind::Word), values, false, false);
+            }
+        }
         // Words of terminals that instructions take whole.
         for (at, own, other) in pairs.input_words() {
             let Ok(address) = Address::parse(&own) else { continue };
@@ -224,6 +238,25 @@ fn accumulated(image: &Image) -> Vec<Address> {
             && !all.contains(address)
         {
             all.push(address.clone());
+        }
+    }
+    all
+}
+
+/// The words of sequencers' steps: those of the position 0 to the length.
+fn steps(image: &Image) -> Vec<Address> {
+    let mut all = Vec::new();
+    for (_, instruction) in crate::instructions(image) {
+        let operands = &instruction.operands;
+        let length = operands.get(4).and_then(Operand::constant).and_then(|constant| constant.as_integer());
+        let first = operands.first().and_then(Operand::address).filter(|address| address.indexed);
+        let place = first.and_then(|it| Some((it.file_type, it.file.number()?, it.element.number()?)));
+        if let (Some("SQO" | "SQC"), Some(length), Some((kind, file, element))) =
+            (instruction.mnemonic.name(), length, place)
+            && matches!(kind, FileType::N | FileType::B)
+        {
+            let last = element.saturating_add(u16::try_from(length.clamp(0, 255)).unwrap_or(0));
+            all.extend((element..=last).map(|element| Address::element(kind, file, element)));
         }
     }
     all

@@ -4,6 +4,7 @@
 use std::time::Duration;
 
 use super::campaign::{Campaign, PACES, TIMING};
+use super::goals::{Goal, GoalKind};
 use super::play::Both;
 use super::side::{Kind, Side, Slc};
 use super::solve::Plan;
@@ -66,12 +67,8 @@ impl<B: Side> Campaign<'_, B> {
     /// Every input on its own: both edges of bits, every value of words.
     pub(super) fn each_input(&mut self) {
         for index in 0..self.inputs.all.len() {
-            self.from = 0;
             self.episodes += 1;
-            self.tape.clear();
-            if let Some(entry) = self.corpus.first() {
-                self.both.copy_from(&entry.both);
-            }
+            self.begin_at(0);
             let values = self.inputs.all.get(index).map(|input| input.values.len().max(2)).unwrap_or(0);
             let number = u16::try_from(index).unwrap_or(u16::MAX);
             for turn in 0..values.min(40) {
@@ -187,7 +184,7 @@ impl<B: Side> Campaign<'_, B> {
         self.scans_of(2);
     }
 
-    fn is_reached(&self, wanted: &super::goals::Goal) -> bool {
+    fn is_reached(&self, wanted: &Goal) -> bool {
         self.goals.all.iter().any(|goal| goal.location == wanted.location && goal.kind == wanted.kind && goal.reached)
     }
 
@@ -262,6 +259,35 @@ impl<B: Side> Campaign<'_, B> {
         if self.random.chance(1, 3) {
             self.change();
         }
+        self.reach((preset, base));
+    }
+
+    /// Around something that comes with time, such as a clock that starts anew after days: a timer is started shortly
+    /// before, and looked at to the millisecond behind it.
+    pub(super) fn at_eve(&mut self) {
+        let eve = self.random.pick(&self.eves).copied();
+        if !eve.is_some_and(|eve| self.begin_at(eve)) {
+            return self.aim();
+        }
+        self.pace = if self.random.chance(1, 2) { 1000 } else { self.pace };
+        let timers = |goal: &&Goal| goal.kind == GoalKind::Done && goal.impossible.is_none();
+        let all: Vec<Goal> = self.goals.all.iter().filter(timers).cloned().collect();
+        for _ in 0..1 + self.random.below(3) {
+            let Some(goal) = self.random.pick(&all) else { break };
+            let mut plan = self.solver.plan(goal, &self.both.a, &mut self.random);
+            plan.wait = 0;
+            self.carry_out(&plan);
+        }
+        let timing = |row: &&(u32, u32)| self.both.a.word(row.0 - 16) & TIMING != 0;
+        let running: Vec<(u32, u32)> = self.presets.iter().filter(timing).copied().collect();
+        match self.random.pick(&running).copied() {
+            Some(timer) if self.goes_on() => self.reach(timer),
+            _ => self.wander(),
+        }
+    }
+
+    /// To the millisecond a timer is done or counts in, from the present state.
+    fn reach(&mut self, (preset, base): (u32, u32)) {
         self.pace = 1000;
         self.scans_of(2);
         match self.random.below(8) {
@@ -304,7 +330,15 @@ impl<B: Side> Campaign<'_, B> {
             self.scan(false, dt * 1000);
             wait -= dt;
         }
-        self.scans_of(u64::from(early.min(8)) + 3);
+        let behind = self.random.below(4) as u64;
+        self.scans_of(u64::from(early.min(8)) + behind);
+        if self.goes_on() && self.random.chance(1, 6) {
+            // Run is left with the timer just done or about to be.
+            for _ in 0..self.random.below(4) {
+                self.change();
+            }
+            self.scan(true, 0);
+        }
         if self.random.chance(1, 2) {
             self.wander();
         }
@@ -455,11 +489,13 @@ impl<B: Side> Campaign<'_, B> {
 
     /// More time than any counter of milliseconds in 31 bits can hold: what runs for weeks must go on right.
     pub(super) fn wait_days(&mut self) {
+        // With changes, or quietly: a change can stop it all.
+        let busy = self.random.chance(1, 2);
         for _ in 0..900 {
             if !self.goes_on() {
                 return;
             }
-            if self.random.chance(1, 4) {
+            if busy && self.random.chance(1, 4) {
                 self.change();
             }
             let dt = if self.random.chance(1, 5) { self.pace } else { DAY_PACE };
