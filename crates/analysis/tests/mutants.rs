@@ -10,9 +10,13 @@ mod dice;
 mod facts;
 #[path = "mutants/gates.rs"]
 mod gates;
+#[path = "mutants/meet.rs"]
+mod meet;
 mod migrated;
 #[path = "mutants/mutate.rs"]
 mod mutate;
+#[path = "mutants/outside.rs"]
+mod outside;
 #[path = "mutants/relations.rs"]
 mod relations;
 #[path = "mutants/same.rs"]
@@ -50,6 +54,7 @@ type Row = [usize; 6];
 fn mutants_are_reported_as_different() {
     let (count, scans) = effort();
     let (mut kinds, mut programs): (BTreeMap<String, Row>, BTreeMap<String, Row>) = Default::default();
+    let mut open = Vec::new();
     for program in migrated::proven(count > FEW) {
         let base = prove(&program, &program.project, scans.min(100_000));
         assert_ne!(base.verdict(), Verdict::Different, "{}: {base}", program.name);
@@ -58,6 +63,9 @@ fn mutants_are_reported_as_different() {
         assert!(all.len() >= 200, "{}: only {} mutants", program.name, all.len());
         for mutant in spread(&all, count) {
             let column = try_one(&program, mutant, scans, &mut judge);
+            if column == HEADS.len() - 1 {
+                open.push(format!("{}: {:?} {}", program.name, mutant.kind, mutant.what));
+            }
             kinds.entry(format!("{:?}", mutant.kind)).or_default()[column] += 1;
             programs.entry(program.name.clone()).or_default()[column] += 1;
         }
@@ -71,14 +79,23 @@ fn mutants_are_reported_as_different() {
     }
     for (name, row) in programs.iter().chain([(&"all".to_owned(), &sum)]) {
         let (found, unexplained) = (row[0], row[5]);
-        let few = unexplained * 100 <= (found + unexplained) * MOST_UNEXPLAINED;
-        assert!(few, "{name}: {unexplained} mutants are neither found, {found} are, nor shown equivalent");
+        let known = UNEXPLAINED.iter().find(|row| row.0 == name).map_or(0, |row| row.1);
+        let few = unexplained <= known.max((found + unexplained) / 100);
+        assert!(few, "{name}: {unexplained} mutants are neither found, {found} are, nor shown equivalent: {open:#?}");
     }
 }
 
-/// Percent of the mutants not shown equivalent that may stay unfound: 1 is what is wanted, `docs/status.md` says
-/// where it is more.
-const MOST_UNEXPLAINED: usize = 10;
+/// Programs with more mutants that are neither found nor shown equivalent than 1 in 100: `docs/status.md` has them.
+const UNEXPLAINED: [(&str, usize); 8] = [
+    ("batch.SLC", 3),
+    ("TRAFFIC_LIGHT.RSS", 5),
+    ("TRAFFIC_LIGHT_BAK017.RSS", 5),
+    ("TRAFFIC_LIGHT_SEQUENCER.RSS", 1),
+    ("TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS", 1),
+    ("sti_1000ms_live.RSS", 2),
+    ("3_pump_sequencing.RSS", 5),
+    ("lecky_demo_tof.RSS", 3),
+];
 
 /// So many mutants from all over the program; those that no controller would load come besides.
 fn spread(all: &[Mutant], count: usize) -> impl Iterator<Item = &Mutant> {
@@ -159,7 +176,7 @@ fn no_rung_goes_missing_silently() {
 fn what_is_followed_is_what_the_engine_does() {
     let thorough = effort().0 > FEW;
     let (count, scans) = if thorough { (40, 400) } else { (2, 30) };
-    for program in migrated::proven(true) {
+    for program in migrated::proven(thorough || !cfg!(debug_assertions)) {
         let scope = prove(&program, &program.project, 2).scope;
         let all = mutate::all(&program.project);
         let mutants: Vec<&Mutant> = spread(&all, count).collect();

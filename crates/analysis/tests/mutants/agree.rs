@@ -351,7 +351,7 @@ pub(crate) fn compare(
 /// The formulas that arguments compare.
 fn formulas(facts: &mut Facts<'_>, change: Option<Change<'_>>) -> Result<After, Why> {
     let Some(change) = change else { return facts.next(None, &HashMap::new()) };
-    let (_, behind) = facts.next_watched(change.place)?;
+    let (_, notes) = facts.next_noted(change.place)?;
     let given = facts.given.clone();
-    facts.next_changed(change, &HashMap::new(), &behind, &given)
+    facts.next_changed(change, &HashMap::new(), (&notes, 32), &given)
 }

@@ -7,6 +7,7 @@ use analysis::proof::{Kind, Scope};
 use domore::Project;
 
 use super::gates::{Answer, Gates, Line, OFF, ON, value};
+use super::meet::{Meeting, Notes};
 use super::relations::speaks_of;
 use super::scan::{Begin, Change, HALTED, Model, Outside, Scan, Start, Why};
 use super::words::{Word, constant, of_bits};
@@ -111,28 +112,27 @@ impl<'f> Facts<'f> {
         Ok(scan.memory)
     }
 
-    /// Memory after any later scan, and behind a rung each time it runs.
-    pub(crate) fn next_watched(&mut self, place: (usize, usize)) -> Result<(After, Vec<After>), Why> {
+    /// Memory after any later scan, and what was written in it; all of memory behind the rung that will change.
+    pub(crate) fn next_noted(&mut self, place: (usize, usize)) -> Result<(After, Notes), Why> {
         let own = HashMap::new();
         let start = Between { first: &self.first, lines: &self.lines, own: &own };
         let mut scan = Scan::new(&self.model, None, &start, (&mut self.gates, &mut self.outside))?;
-        scan.watched = Some(place);
+        scan.notes = Some(Notes::new(place));
         scan.run(&self.begin)?;
-        Ok((scan.memory, scan.behind))
+        Ok((scan.memory, scan.notes.unwrap_or_default()))
     }
 
-    /// Memory after any later scan of a program with a change, met with the unchanged one behind the change.
+    /// Memory after any later scan of a program with a change, which meets the unchanged one.
     pub(crate) fn next_changed(
         &mut self,
         change: Change<'_>,
         own: &HashMap<u32, Line>,
-        behind: &[After],
+        (notes, questions): (&Notes, usize),
         given: &[Line],
     ) -> Result<After, Why> {
         let start = Between { first: &self.first, lines: &self.lines, own };
         let mut scan = Scan::new(&self.model, Some(change), &start, (&mut self.gates, &mut self.outside))?;
-        scan.watched = Some(change.place);
-        scan.peer = Some((behind, given));
+        scan.peer = Some(Meeting::new(notes, given, questions));
         scan.run(&self.begin)?;
         Ok(scan.memory)
     }

@@ -15,6 +15,9 @@ pub(crate) const ON: Line = 1;
 /// Steps of the solver after which a question stays open.
 const PATIENCE: u64 = 300_000;
 
+/// Gates that are looked through.
+const LEVELS: u32 = 4;
+
 /// Gates and inputs, and what a solver was told of them.
 pub(crate) struct Gates {
     /// Both sides of a gate; an input has none.
@@ -117,8 +120,33 @@ impl Gates {
         self.and(either, both ^ 1)
     }
 
+    /// Whether `line` is on wherever `select` is, as far as gates above it show.
+    fn implies(&self, select: Line, line: Line, levels: u32) -> bool {
+        let sides = || self.gate(select).filter(|_| select & 1 == 0 && levels > 0);
+        select == line
+            || sides().is_some_and(|(a, b)| self.implies(a, line, levels - 1) || self.implies(b, line, levels - 1))
+    }
+
+    /// What a choice is where `select` is on: a value kept under power is that value under the same power.
+    fn under(&self, select: Line, line: Line, levels: u32) -> Line {
+        let (1, Some((a, b)), true) = (line & 1, self.gate(line), levels > 0) else { return line };
+        if a & b & 1 == 0 {
+            return line;
+        }
+        let (Some(x), Some(y)) = (self.gate(a), self.gate(b)) else { return line };
+        for ((one, two), (three, four)) in [(x, y), (y, x)] {
+            for (choice, value) in [(one, two), (two, one)] {
+                if (three == choice ^ 1 || four == choice ^ 1) && self.implies(select, choice, LEVELS) {
+                    return self.under(select, value, levels - 1);
+                }
+            }
+        }
+        line
+    }
+
     /// `on` where `select` is on, else `off`.
     pub(crate) fn choose(&mut self, select: Line, on: Line, off: Line) -> Line {
+        let (on, off) = (self.under(select, on, LEVELS), self.under(select ^ 1, off, LEVELS));
         if on == off {
             return on;
         }
@@ -191,14 +219,23 @@ impl Gates {
     }
 
     fn with(&self, input: &dyn Fn(u32) -> bool) -> Vec<bool> {
-        let mut values = vec![false; self.nodes.len()];
-        for (node, sides) in (0u32..).zip(&self.nodes).skip(1) {
-            values[node as usize] = match sides {
-                None => input(node),
-                Some((a, b)) => value(&values, *a) && value(&values, *b),
-            };
-        }
+        let mut values = vec![false];
+        self.more(&mut values, input);
         values
+    }
+
+    /// Adds the values of nodes that are new since; new inputs are off.
+    pub(crate) fn extend(&self, values: &mut Vec<bool>) {
+        self.more(values, &|_| false);
+    }
+
+    fn more(&self, values: &mut Vec<bool>, input: &dyn Fn(u32) -> bool) {
+        for (node, sides) in (0u32..).zip(&self.nodes).skip(values.len()) {
+            values.push(match sides {
+                None => input(node),
+                Some((a, b)) => value(values, *a) && value(values, *b),
+            });
+        }
     }
 }
 

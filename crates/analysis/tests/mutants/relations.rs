@@ -248,6 +248,9 @@ fn propose(map: &Map, rung: &Rung, varying: &BTreeSet<u32>, samples: &[Data], cl
     }
     let shows = |atom: &Atom| samples.iter().map(|data| atom.holds(data)).collect::<Vec<bool>>();
     let relations: BTreeMap<Atom, Vec<bool>> = atoms.into_iter().map(|atom| (atom, shows(&atom))).collect();
+    // A word that is 0 is as good as a flag.
+    let empty = words.iter().filter(|part| changes(part)).map(|part| Atom::Equal(*part, Part::Fixed(0)));
+    let empty: Vec<(Atom, Vec<bool>)> = empty.map(|atom| (atom, shows(&atom))).collect();
     let both = bits.iter().flat_map(|bit| [Atom::Bit(*bit, true), Atom::Bit(*bit, false)]);
     let flags: Vec<(Atom, Vec<bool>)> = both.map(|atom| (atom, shows(&atom))).collect();
     let always = |seen: &[bool]| seen.iter().all(|seen| *seen);
@@ -256,7 +259,8 @@ fn propose(map: &Map, rung: &Rung, varying: &BTreeSet<u32>, samples: &[Data], cl
             clauses.insert(vec![*atom]);
             continue;
         }
-        for (flag, on) in &flags {
+        let of_words = matches!(atom, Atom::Less(Part::Word(..), Part::Word(..)));
+        for (flag, on) in flags.iter().chain(empty.iter().filter(|_| of_words)) {
             if !always(on) && seen.iter().zip(on).all(|(seen, on)| *seen || *on) {
                 clauses.insert(vec![*flag, *atom]);
             }

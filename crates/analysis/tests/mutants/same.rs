@@ -7,7 +7,7 @@ use analysis::proof::Scope;
 use domore::Project;
 
 use super::facts::{After, Facts};
-use super::gates::{Answer, Line, ON, value};
+use super::gates::{Answer, Line, OFF, ON, value};
 use super::mutate::Mutant;
 use super::relations::{bits_of, kept, line_of, speaks_of};
 use super::scan::{Change, HALTED, Outside, Why, timed};
@@ -25,6 +25,11 @@ pub(crate) enum Same {
 
 /// Steps of the solver for a question, where there is hope to find a difference yet and where there is none.
 const STEPS: [u64; 2] = [10_000, 150_000];
+
+/// Questions on the way through a scan, likewise.
+const QUESTIONS: [usize; 2] = [48, 400];
+/// Times that more bits that differ are looked for before a scan is followed anew with them.
+const MORE: usize = 12;
 
 /// Decides about the mutants of one program. What it has to know of the program is found when it is needed.
 pub(crate) struct Judge<'j> {
@@ -103,7 +108,7 @@ fn decide(facts: &mut Facts<'_>, compared: &HashSet<u32>, change: Change<'_>, de
     let (ours, theirs) = (facts.first_scan(None, &mut outside)?, facts.first_scan(Some(change), &mut outside)?);
     let mut apart: HashSet<u32> = HashSet::new();
     loop {
-        let found = differing(facts, &ours, &theirs, &apart, None)?;
+        let found = differing(facts, &ours, &theirs, (&apart, compared), None)?;
         if found.is_empty() {
             break;
         }
@@ -114,45 +119,79 @@ fn decide(facts: &mut Facts<'_>, compared: &HashSet<u32>, change: Change<'_>, de
     }
     // Every later one.
     let begun = theirs;
-    let (ours, behind) = facts.next_watched(change.place)?;
+    let (ours, notes) = facts.next_noted(change.place)?;
     let near: HashSet<u32> = [change, Change { rung: facts.model.rung(change.place, None), ..change }]
         .into_iter()
         .flat_map(|change| change.rung.map(|rung| bits_of(&facts.model.map, rung)).unwrap_or_default())
         .collect();
     let near = if depth > 1 { facts.model.around(&near) } else { near };
+    let questions = QUESTIONS[usize::from(related)];
     loop {
         let own: HashMap<u32, Line> = apart.iter().map(|bit| (*bit, facts.gates.input())).collect();
         let known = if related { facts.known_of(&|bit| near.contains(&bit)) } else { facts.given.clone() };
-        let theirs = facts.next_changed(change, &own, &behind, &known)?;
-        let given = if related { theirs_too(facts, &begun, &own, &theirs, &near) } else { facts.given.clone() };
-        let found = differing(facts, &ours, &theirs, &apart, Some(given.clone()))?;
+        let mut theirs = facts.next_changed(change, &own, (&notes, questions), &known)?;
+        let mut given = known;
+        if related {
+            let more = theirs_too(facts, &begun, &own, &theirs, &near);
+            if more.len() > given.len() {
+                theirs = facts.next_changed(change, &own, (&notes, questions), &more)?;
+            }
+            given = more;
+        }
+        let mut found = differing(facts, &ours, &theirs, (&apart, compared), Some(given.clone()))?;
+        // Some more at once.
+        let mut also = found.clone();
+        for _ in 0..MORE {
+            if also.is_empty() || also.iter().any(|bit| compared.contains(bit) || timed(*bit).is_some()) {
+                break;
+            }
+            let all = apart.iter().chain(&found).copied().collect();
+            also = differing(facts, &ours, &theirs, (&all, compared), Some(given.clone()))?;
+            found.extend(&also);
+        }
         if found.is_empty() {
             return Ok(Same::Yes { helpers: apart.len(), related });
         }
         if found.iter().any(|bit| compared.contains(bit) || timed(*bit).is_some()) {
             if related && apart.len() <= MOST_GUARDED {
                 for guard in near.iter().filter(|bit| !apart.contains(bit)).flat_map(|bit| [(*bit, 0), (*bit, 1)]) {
-                    if guarded(facts, guard, (&begun, &own), (&ours, &theirs), &given)? {
+                    if guarded(facts, guard, (&begun, &own), (&ours, &theirs), (&given, compared))? {
                         return Ok(Same::Yes { helpers: apart.len(), related });
                     }
+                }
+                // Once more with all helpers that can differ.
+                let matters = |bit: &u32| compared.contains(bit) || timed(*bit).is_some();
+                let helpers: Vec<u32> = found.iter().copied().filter(|bit| !matters(bit)).collect();
+                if !helpers.is_empty() {
+                    apart.extend(with_words(facts, compared, &helpers));
+                    continue;
                 }
             }
             return Ok(Same::No(found));
         }
-        apart.extend(found);
+        apart.extend(with_words(facts, compared, &found));
     }
 }
 
-/// Bits that may differ under a guard: two double words.
-const MOST_GUARDED: usize = 64;
+/// Helpers that differ with their whole double words: their bits need no question each.
+fn with_words(facts: &Facts<'_>, compared: &HashSet<u32>, found: &[u32]) -> Vec<u32> {
+    let words: HashSet<u32> = found.iter().filter(|bit| **bit < HALTED).map(|bit| bit >> 5).collect();
+    let beside = facts.varying().filter(|bit| words.contains(&(bit >> 5)) && !compared.contains(bit));
+    beside.chain(found.iter().copied()).collect()
+}
 
-/// Whether helpers differ only while a bit of the program is on (0) or off (1), and nothing else does.
+/// Bits that are asked about word by word.
+const MOST_APART: usize = 400;
+/// Bits that may differ under a guard: a few double words.
+const MOST_GUARDED: usize = 200;
+
+/// Whether some of the helpers differ only while a bit of the program is on (0) or off (1), so that nothing else does.
 fn guarded(
     facts: &mut Facts<'_>,
     (bit, inverted): (u32, Line),
     (begun, own): (&After, &HashMap<u32, Line>),
     (ours, theirs): (&After, &After),
-    given: &[Line],
+    (given, compared): (&[Line], &HashSet<u32>),
 ) -> Result<bool, Why> {
     let first = begun.get(&bit).copied().unwrap_or(0) ^ inverted;
     let flag = facts.before(bit);
@@ -161,25 +200,37 @@ fn guarded(
     if flag < 2 || own.is_empty() || first != ON {
         return Ok(false);
     }
-    let mut equal = ON;
-    let mut differs = 0;
-    for (helper, line) in own {
-        let before = facts.before(*helper);
-        let apart = facts.gates.xor(before, *line);
-        equal = facts.gates.and(equal, apart ^ 1);
-        let (x, y) = (after(ours, *helper, before), after(theirs, *helper, *line));
-        let apart = facts.gates.xor(x, y);
-        differs = facts.gates.or(differs, apart);
-    }
-    let known = facts.gates.or(guard, equal);
     let guard_after = after(ours, bit, flag) ^ inverted;
-    let broken = facts.gates.and(guard_after ^ 1, differs);
-    let given: Vec<Line> = given.iter().copied().chain([known]).collect();
-    if !matches!(facts.gates.ask(broken, &given), Answer::Never) {
-        return Ok(false);
+    // Those that are equal while the guard is on; of the others nothing is known.
+    let mut bound: Vec<(u32, Line)> = own.iter().map(|(helper, line)| (*helper, *line)).collect();
+    bound.sort_unstable();
+    while !bound.is_empty() {
+        let mut equal = ON;
+        let mut differs = Vec::new();
+        for (helper, line) in &bound {
+            let before = facts.before(*helper);
+            let apart = facts.gates.xor(before, *line);
+            equal = facts.gates.and(equal, apart ^ 1);
+            let (x, y) = (after(ours, *helper, before), after(theirs, *helper, *line));
+            differs.push(facts.gates.xor(x, y));
+        }
+        let any = differs.iter().fold(OFF, |any, line| facts.gates.or(any, *line));
+        let known = facts.gates.or(guard, equal);
+        let broken = facts.gates.and(guard_after ^ 1, any);
+        let given: Vec<Line> = given.iter().copied().chain([known]).collect();
+        match facts.gates.ask(broken, &given) {
+            Answer::Open => return Ok(false),
+            Answer::Values(values) => {
+                let mut differs = differs.iter();
+                bound.retain(|_| differs.next().is_some_and(|line| !value(&values, *line)));
+            }
+            Answer::Never => {
+                let helpers = own.keys().copied().collect();
+                return Ok(differing(facts, ours, theirs, (&helpers, compared), Some(given))?.is_empty());
+            }
+        }
     }
-    let helpers = own.keys().copied().collect();
-    Ok(differing(facts, ours, theirs, &helpers, Some(given))?.is_empty())
+    Ok(false)
 }
 
 fn after(memory: &After, bit: u32, before: Line) -> Line {
@@ -219,7 +270,7 @@ fn differing(
     facts: &mut Facts<'_>,
     ours: &After,
     theirs: &After,
-    apart: &HashSet<u32>,
+    (apart, compared): (&HashSet<u32>, &HashSet<u32>),
     given: Option<Vec<Line>>,
 ) -> Result<Vec<u32>, Why> {
     let mut bits: Vec<u32> = ours.keys().chain(theirs.keys()).copied().filter(|bit| !apart.contains(bit)).collect();
@@ -240,12 +291,31 @@ fn differing(
             differences.push((bit, differs));
         }
     }
-    let any = differences.iter().fold(0, |any, (_, line)| facts.gates.or(any, *line));
-    match facts.gates.ask(any, &given.unwrap_or_default()) {
-        Answer::Never => Ok(Vec::new()),
-        Answer::Open => Err("too much work".to_owned()),
+    let given = given.unwrap_or_default();
+    if let Some(found) = asked(facts, &differences, &given) {
+        return Ok(found);
+    }
+    // Word by word; a helper about which nothing is known differs.
+    let mut found = Vec::new();
+    for word in differences.chunk_by(|a, b| a.0 >> 4 == b.0 >> 4).take_while(|_| differences.len() <= MOST_APART) {
+        let matters = || word.iter().any(|(bit, _)| compared.contains(bit) || timed(*bit).is_some());
+        match asked(facts, word, &given) {
+            Some(bits) => found.extend(bits),
+            None if matters() => return Err("too much work".to_owned()),
+            None => found.extend(word.iter().map(|row| row.0)),
+        }
+    }
+    if found.is_empty() && differences.len() > MOST_APART { Err("too much work".to_owned()) } else { Ok(found) }
+}
+
+/// Those of the bits that can differ at once, some of them; `None`: after much work nothing is known.
+fn asked(facts: &mut Facts<'_>, differences: &[(u32, Line)], given: &[Line]) -> Option<Vec<u32>> {
+    let any = differences.iter().fold(OFF, |any, (_, line)| facts.gates.or(any, *line));
+    match facts.gates.ask(any, given) {
+        Answer::Never => Some(Vec::new()),
+        Answer::Open => None,
         Answer::Values(values) => {
-            Ok(differences.into_iter().filter(|(_, line)| value(&values, *line)).map(|(bit, _)| bit).collect())
+            Some(differences.iter().filter(|(_, line)| value(&values, *line)).map(|row| row.0).collect())
         }
     }
 }

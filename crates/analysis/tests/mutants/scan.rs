@@ -10,7 +10,9 @@ use domore::math::Expression;
 use domore::memory::{Kind, Map, Num, Place, Resolved};
 use domore::{CodeBlock, CodeKind, Instruction, Project, Rung};
 
-use super::gates::{Answer, Gates, Line, OFF, ON, value};
+use super::gates::{Gates, Line, OFF, ON};
+use super::meet::{Meeting, Notes, Step, Visit};
+pub(crate) use super::outside::Outside;
 use super::relations::words_of;
 use super::words::{Word, bit, constant, ends, fixed, of_bits, wrapped};
 
@@ -24,8 +26,6 @@ pub(crate) const HALTED: u32 = HIDDEN;
 /// Elements an index may choose from.
 const MOST_CHOICES: i64 = 1024;
 const MOST_CALLS: usize = 16;
-/// Bits that are asked about one by one.
-const MOST_MET: usize = 300;
 
 /// A timer that was not enabled when it was processed last.
 fn fresh(timer: u32) -> u32 {
@@ -55,42 +55,6 @@ pub(crate) struct Model<'m> {
 pub(crate) struct Change<'c> {
     pub(crate) place: (usize, usize),
     pub(crate) rung: Option<&'c Rung>,
-}
-
-/// Values from outside, the same for every program that is followed with them.
-#[derive(Default)]
-pub(crate) struct Outside {
-    named: HashMap<(String, Vec<Line>), Word>,
-}
-
-impl Outside {
-    /// Forgets what was named behind so many gates.
-    pub(crate) fn forget(&mut self, size: usize) {
-        self.named.retain(|(_, on), word| on.iter().chain(&*word).all(|line| ((*line >> 1) as usize) < size));
-    }
-
-    /// The bits of a name, as far as there are any.
-    pub(crate) fn get(&self, key: &(String, Vec<Line>)) -> Option<&Word> {
-        self.named.get(key)
-    }
-
-    /// Gives a name its bits.
-    pub(crate) fn put(&mut self, name: &str, on: &[Line], word: Word) {
-        self.named.insert((name.to_owned(), on.to_vec()), word);
-    }
-
-    /// All names with their bits.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (&(String, Vec<Line>), &Word)> {
-        self.named.iter()
-    }
-
-    /// So many bits from outside, the same ones for the same name.
-    pub(crate) fn word(&mut self, gates: &mut Gates, name: &str, on: &[Line], bits: usize) -> Word {
-        self.named
-            .entry((name.to_owned(), on.to_vec()))
-            .or_insert_with(|| (0..bits).map(|_| gates.input()).collect())
-            .clone()
-    }
 }
 
 /// Memory before a scan.
@@ -195,9 +159,6 @@ fn timers_of(rung: &Rung) -> usize {
     rung.instructions.iter().filter(|it| it.is("TMR")).count()
 }
 
-/// Memory of another program behind a rung, each time it ran, and what holds before the scan.
-type Peer<'s> = (&'s [HashMap<u32, Line>], &'s [Line]);
-
 /// A scan under way.
 pub(crate) struct Scan<'s, S: Start> {
     pub(crate) gates: &'s mut Gates,
@@ -207,12 +168,14 @@ pub(crate) struct Scan<'s, S: Start> {
     change: Option<Change<'s>>,
     pub(crate) memory: HashMap<u32, Line>,
     time: Word,
-    /// A rung behind which memory is looked at.
-    pub(crate) watched: Option<(usize, usize)>,
-    /// Memory behind it, each time it runs.
-    pub(crate) behind: Vec<HashMap<u32, Line>>,
-    /// The same of another program, and what holds before the scan: what cannot differ is taken for equal.
-    pub(crate) peer: Option<Peer<'s>>,
+    /// How often each block ran in this scan.
+    runs: HashMap<usize, usize>,
+    /// The instruction that writes now.
+    step: Option<Step>,
+    /// What is written, where that is noted.
+    pub(crate) notes: Option<Notes>,
+    /// What another program wrote: what cannot differ from it is taken for equal.
+    pub(crate) peer: Option<Meeting<'s>>,
 }
 
 impl<'s, S: Start> Scan<'s, S> {
@@ -236,8 +199,9 @@ impl<'s, S: Start> Scan<'s, S> {
             change,
             memory: HashMap::new(),
             time: constant(0),
-            watched: None,
-            behind: Vec::new(),
+            runs: HashMap::new(),
+            step: None,
+            notes: None,
             peer: None,
         })
     }
@@ -252,6 +216,9 @@ impl<'s, S: Start> Scan<'s, S> {
         let after = self.gates.choose(power, value, before);
         if after != before || self.memory.contains_key(&at) {
             self.memory.insert(at, after);
+        }
+        if let (Some(notes), Some(step)) = (&mut self.notes, self.step) {
+            notes.write(step, at, after);
         }
     }
 
@@ -346,54 +313,39 @@ impl<'s, S: Start> Scan<'s, S> {
         if depth > MOST_CALLS {
             return Err("calls are nested too deeply".to_owned());
         }
+        let run = *self.runs.entry(block).and_modify(|run| *run += 1).or_insert(0);
         for number in 0..self.model.blocks[block].rungs.len() {
             if let Some(rung) = self.model.rung((block, number), self.change) {
                 if rung.instructions.iter().any(|it| it.is("RET")) {
                     return if rung.instructions.len() == 1 { Ok(()) } else { Err("RET in a rung".to_owned()) };
                 }
-                self.one(rung, (block, number), power, depth)?;
+                self.one(rung, (block, number, run), power, depth)?;
             }
-            if self.watched == Some((block, number)) {
-                self.meet();
-                self.behind.push(self.memory.clone());
+            if self.change.is_some_and(|change| change.place == (block, number)) {
+                self.meet((block, number, run), None);
+            } else if let Some(notes) = &mut self.notes {
+                notes.end((block, number, run), &self.memory);
             }
         }
         Ok(())
     }
 
-    /// Takes bits for those of the other program behind the same rung where they cannot differ, so that what
-    /// follows is the same logic.
-    fn meet(&mut self) {
-        let Some((peer, given)) = self.peer else { return };
-        let Some(peer) = peer.get(self.behind.len()) else { return };
-        let mut differences = Vec::new();
-        for (bit, line) in peer {
-            let own = self.bit(*bit);
-            if own != *line {
-                differences.push((*bit, *line, self.gates.xor(own, *line)));
-            }
+    /// Takes bits for those the other program has behind the same rung or instruction where they cannot differ, so
+    /// that what follows is the same logic.
+    fn meet(&mut self, rung: Visit, instruction: Option<usize>) {
+        let Some(mut peer) = self.peer.take() else { return };
+        let rows = peer.rows(rung, instruction).filter_map(|(bit, line)| {
+            let own = self.memory.get(bit).copied().unwrap_or_else(|| self.start.line(*bit));
+            (own != *line).then_some((*bit, own, *line))
+        });
+        let rows = rows.collect();
+        for (bit, line) in peer.alike(self.gates, rows) {
+            self.memory.insert(bit, line);
         }
-        differences.sort_unstable();
-        let any = differences.iter().fold(OFF, |any, row| self.gates.or(any, row.2));
-        let mut differ = match self.gates.ask(any, given) {
-            Answer::Never => Vec::new(),
-            Answer::Values(values) => differences.iter().filter(|row| value(&values, row.2)).map(|row| row.0).collect(),
-            Answer::Open => return,
-        };
-        if differ.is_empty() || differences.len() <= MOST_MET {
-            for (bit, line, differs) in differences {
-                let open = !differ.is_empty() && !differ.contains(&bit);
-                if open && !matches!(self.gates.ask(differs, given), Answer::Never) {
-                    differ.push(bit);
-                }
-                if !differ.contains(&bit) {
-                    self.memory.insert(bit, line);
-                }
-            }
-        }
+        self.peer = Some(peer);
     }
 
-    fn one(&mut self, rung: &Rung, place: (usize, usize), active: Line, depth: usize) -> Result<(), Why> {
+    fn one(&mut self, rung: &Rung, place: Visit, active: Line, depth: usize) -> Result<(), Why> {
         let mut stack: Vec<Line> = Vec::new();
         let mut timers = 0;
         for (index, it) in rung.instructions.iter().enumerate() {
@@ -432,6 +384,8 @@ impl<'s, S: Start> Scan<'s, S> {
                     }
                     let top = *stack.last().ok_or_else(missing)?;
                     let power = self.gates.and(active, top);
+                    let changed = self.change.is_some_and(|change| change.place == (place.0, place.1));
+                    self.step = Some((place, index));
                     if it.is("TMR") {
                         let key = (place.0, place.1, timers);
                         timers += 1;
@@ -439,6 +393,9 @@ impl<'s, S: Start> Scan<'s, S> {
                         self.timer(it, timer, active, top)?;
                     } else {
                         self.output(it, power, (active, top), depth)?;
+                    }
+                    if !changed {
+                        self.meet(place, Some(index));
                     }
                 }
             }
@@ -710,8 +667,16 @@ impl<'s, S: Start> Scan<'s, S> {
         Ok(self.value(&operand)?.0)
     }
 
-    fn store(&mut self, text: &str, (value, there): Value, power: Line) -> Result<(), Why> {
+    fn store(&mut self, text: &str, (mut value, there): Value, power: Line) -> Result<(), Why> {
         let power = self.gates.and(power, there);
+        if let Some(step) = self.step {
+            if let Some(notes) = &mut self.notes {
+                notes.store(step, &value, power);
+            }
+            if let Some(peer) = &mut self.peer {
+                peer.store(self.gates, step, &mut value, power);
+            }
+        }
         match self.source(&self.operand(text)?)? {
             Source::Fixed(_) => Err("a constant".to_owned()),
             Source::Place(place) => self.keep(place, &value, power),
