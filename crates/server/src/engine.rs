@@ -155,7 +155,9 @@ pub struct Engine {
     frames: watch::Sender<Arc<Frame>>,
 }
 
-type Request = Box<dyn FnOnce(&mut Engine) + Send>;
+/// Does something and gives what answers it. Answers go out behind the frame, so that who is answered sees what was done.
+type Request = Box<dyn FnOnce(&mut Engine) -> Answer + Send>;
+type Answer = Box<dyn FnOnce() + Send>;
 
 /// A way to an engine, for many at once. The engine ends when the last one is gone.
 #[derive(Clone)]
@@ -195,8 +197,11 @@ impl Handle {
     ) -> Result<R, NotTaken> {
         let (answer, answered) = oneshot::channel();
         let request: Request = Box::new(move |engine| {
-            // Nobody waits any more for the answer of a page that was closed.
-            let _ = answer.send(what(engine));
+            let result = what(engine);
+            Box::new(move || {
+                // Nobody waits any more for the answer of a page that was closed.
+                let _ = answer.send(result);
+            })
         });
         self.requests.try_send(request).map_err(|error| match error {
             TrySendError::Full(_) => NotTaken::Busy,
@@ -251,12 +256,11 @@ impl Engine {
             };
             match first {
                 Ok(request) => {
-                    request(self);
+                    let mut answers = vec![request(self)];
                     // Those that wait by now, but none that come meanwhile: scans are due too.
-                    for request in queue.try_iter().take(QUEUE) {
-                        request(self);
-                    }
+                    answers.extend(queue.try_iter().take(QUEUE).map(|request| request(self)));
                     self.show();
+                    answers.into_iter().for_each(|answer| answer());
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use futures_util::SinkExt;
 use serde_json::{Value, json};
-use server::Access;
+use server::workbench::Workbench;
+use server::{Access, engine};
 use support::wire::{ask, get, live, post, serve, told};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -31,6 +32,21 @@ async fn a_program_is_run_and_told() {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
     assert_eq!((&state["ended"], &state["scans"]), (&json!("the condition holds"), &json!(101)));
+}
+
+/// Who is answered that something was done sees it done, whatever else waits for the engine.
+#[tokio::test]
+async fn what_was_done_is_shown_before_it_is_answered() {
+    let bench = Workbench::new(Box::new(support::machine(&["XIC I:0.0/0 OTE B3:0/0"])));
+    let handle = engine::start(bench).expect("a thread");
+    let busy = |time| handle.ask(move |_| std::thread::sleep(Duration::from_millis(time)));
+    let change = async {
+        handle.ask(|engine| engine.bench.keep("here")).await.expect("taken").expect("kept");
+        handle.frames().borrow().status.snapshots.clone()
+    };
+    // The first keeps the engine busy until the others wait; the last one holds up the frame of both.
+    let (first, shown, last) = tokio::join!(busy(100), change, busy(200));
+    assert_eq!((first, shown, last), (Ok(()), vec!["here".to_owned()], Ok(())));
 }
 
 #[tokio::test]
