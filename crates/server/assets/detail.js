@@ -18,6 +18,15 @@ export function close(app) {
   if (inside) (opener?.isConnected ? opener : byId("view")).focus({ preventScroll: true });
 }
 
+/** Addresses of the members of a whole element: of `T4:0` its bits and words. */
+async function parts(app, address) {
+  const label = (/^([A-Z]+\d*):\d+$/i.exec(address) ?? (app.project.dialect === "slc" ? null : /^([A-Z]+)\d+$/i.exec(address)))?.[1].toUpperCase();
+  const file = app.project.data_files.find((one) => one.label.toUpperCase() === label);
+  if (!file) return [];
+  const { columns } = await get(`${app.api}/data/${encodeURIComponent(file.label)}?from=0&count=1`).catch(() => ({ columns: [] }));
+  return columns.filter((column) => column !== "").map((column) => address + column);
+}
+
 /** Opens the panel on an address. `app` is the page. */
 export async function open(app, address) {
   const panel = byId("detail");
@@ -29,8 +38,11 @@ export async function open(app, address) {
     tell(problem.message, "wrong");
     return;
   }
+  const members = await parts(app, found.address);
   stop?.();
   const value = el("output", { class: "value" }, "…");
+  const outputs = members.map((at) => [at, el("output", { class: "value" }, "…")]);
+  const link = (at) => button(at.slice(found.address.length), `${at}: value, uses, watch, trend`, () => open(app, at), { class: "link address" });
   const forced = el("strong", { class: "forced-word" });
   const bit = (on) => button(on ? "1" : "0", `Write ${on}`, () => post(`${app.api}/write`, { address: found.address, value: on }));
   const input = el("input", { type: "text", ariaLabel: `New value of ${found.address}`, size: 10, autocomplete: "off" });
@@ -45,11 +57,12 @@ export async function open(app, address) {
     el("div", { class: "row" }, el("h2", {}, found.address), button("×", "Close", () => close(app), { class: "close", ariaLabel: "Close" })),
     el("p", { class: "symbol" }, found.symbol),
     el("p", { class: "description" }, found.description),
-    el("p", {}, "Value: ", value, " ", forced),
-    app.readOnly ? null : el("div", { class: "row" }, bit(0), bit(1), write),
+    members.length ? el("dl", { class: "facts members" }, outputs.flatMap(([at, node]) => [el("dt", {}, link(at)), el("dd", {}, node)]))
+      : el("p", {}, "Value: ", value, " ", forced),
+    app.readOnly || members.length ? null : el("div", { class: "row" }, bit(0), bit(1), write),
     app.readOnly || !point ? null
       : el("div", { class: "row", role: "group", ariaLabel: "Force" }, force(true, "Force on"), force(false, "Force off"), force(null, "Remove force")),
-    el("div", { class: "row" },
+    members.length ? null : el("div", { class: "row" },
       button("Watch", "Add to the watch list", () => app.watch(found.address)),
       button("Trend", "Add to the trend", () => app.trend(found.address))),
     el("h3", {}, `Cross reference (${found.uses.length + found.left_out})`),
@@ -62,10 +75,11 @@ export async function open(app, address) {
   panel.ariaLabel = `Address ${found.address}`;
   panel.hidden = false;
   panel.focus({ preventScroll: true });
-  app.live.see("detail", { values: [found.address] });
+  app.live.see("detail", { values: members.length ? members : [found.address] });
   stop = app.live.listen((_, live) => {
     const now = live.values.get(found.address);
     value.textContent = shown(now);
+    for (const [at, node] of outputs) node.textContent = shown(live.values.get(at));
     const state = app.forces.get(found.address);
     forced.textContent = state === undefined ? "" : `forced ${state ? "ON" : "OFF"}`;
   });

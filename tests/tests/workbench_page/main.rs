@@ -191,6 +191,18 @@ fn what_is_found_and_what_is_called_can_be_gone_to() {
     browser.wait_for(operand);
     browser.run(&format!("{operand}.dispatchEvent(new MouseEvent('click', {{ bubbles: true }}))"));
     browser.wait_for("location.hash === '#ladder/3/0'");
+    // Of a timer everything is shown, not a value it has not.
+    show(&browser, &page, "timers");
+    browser.click("#view tbody th button");
+    browser.wait_for("document.querySelector('#detail .members')");
+    browser.wait_for(
+        "[...document.querySelectorAll('#detail .members output')].every((one) => /^\\d+$/.test(one.textContent))",
+    );
+    assert_eq!(browser.text("#detail h2"), browser.text("#view tbody th button"));
+    let names = "[...document.querySelectorAll('#detail .members button')].map((one) => one.textContent).join()";
+    browser.wait_for(&format!("{names} === '/EN,/TT,/DN,.PRE,.ACC'"));
+    browser.click("#detail .members button[title^='T4:0.PRE']");
+    browser.wait_for("document.querySelector('#detail h2').textContent === 'T4:0.PRE'");
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 

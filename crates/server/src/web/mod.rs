@@ -284,7 +284,7 @@ impl Status {
     }
 }
 
-/// A value as browsers get it: bits as 0 and 1, whole elements as nothing.
+/// A value as browsers get it: bits as 0 and 1, elements of words alone as those, other whole elements as nothing.
 fn json_value(value: &Value) -> serde_json::Value {
     match value {
         Value::Bit(on) => u8::from(*on).into(),
@@ -294,6 +294,20 @@ fn json_value(value: &Value) -> serde_json::Value {
         Value::Float(number) if !number.is_finite() => number.to_string().into(),
         Value::Float(number) => ladder::format_float(*number).parse::<f64>().unwrap_or(f64::from(*number)).into(),
         Value::Text(text) => text.as_str().into(),
+        Value::Words(words) => {
+            words.iter().map(|word| word.cast_signed().to_string()).collect::<Vec<_>>().join(" ").into()
+        }
         _ => serde_json::Value::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_an_element_are_told_as_data_tables_show_them() {
+        assert_eq!(json_value(&Value::Words(vec![2, 38_704].into())), serde_json::json!("2 -26832"));
+        assert_eq!(json_value(&Value::Word(-1)), serde_json::json!(-1));
     }
 }
