@@ -307,7 +307,7 @@ mod tests {
 
     #[test]
     fn words_of_an_element_are_told_as_data_tables_show_them() {
-        assert_eq!(json_value(&Value::Words(vec![2, 38_704].into())), serde_json::json!("2 -26832"));
+        assert_eq!(json_value(&Value::Words(vec![2, 38_704])), serde_json::json!("2 -26832"));
         assert_eq!(json_value(&Value::Word(-1)), serde_json::json!(-1));
     }
 }
