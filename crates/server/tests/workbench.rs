@@ -281,6 +281,30 @@ fn what_is_written_in_program_mode_meets_the_prescan_of_the_replay_too() {
 }
 
 #[test]
+fn a_fault_of_a_recording_is_expected_by_its_scenario() {
+    // Arithmetic overflow at the end of a scan is major fault 0020.
+    let ladder = &["XIC I:0.0/0 OTE S:5/0", "ADD N7:0 1 N7:0"];
+    let mut bench = Workbench::new(Box::new(machine(ladder)));
+    bench.record().expect("begins");
+    scans(&mut bench, 3);
+    set(&mut bench, "I:0.0/0", 1);
+    scans(&mut bench, 1);
+    assert!(!bench.scan(true), "it has stopped");
+    set(&mut bench, "I:0.0/0", 0);
+    set(&mut bench, "S:5/0", 0);
+    bench.change(Change::Mode(ModeChange::Run)).expect("clears it");
+    scans(&mut bench, 2);
+    bench.expect(&["N7:0".to_owned()]).expect("recording");
+    let (text, problems) = bench.recorded(&Recorded::default()).expect("recording");
+    assert_eq!(problems, Vec::<String>::new(), "{text}");
+    assert!(text.contains("fault = \"0020\""), "{text}");
+    let without = text.replace("fault = \"0020\"\n", "");
+    let scenario = Scenario::parse(&without).expect("reads");
+    let report = play(&scenario, Subject::controller_mut(&mut machine(ladder)), Vec::new()).expect("plays");
+    assert_eq!(report.failures.len(), 1, "the fault is no surprise only where it is expected");
+}
+
+#[test]
 fn a_number_that_would_become_another_one_is_refused() {
     let mut bench = bench();
     let why = bench.write("N7:0", &Literal::Integer(40_000)).expect_err("a word ends at 32767");

@@ -183,6 +183,7 @@ impl Workbench {
                 recorder.forced(&self.state);
             }
             recorder.scanned(scanned.dt);
+            recorder.stopped(self.state.machine.controller().stopped().as_ref());
         }
         let controller = self.state.machine.controller();
         let now = u64::try_from(controller.now().as_nanos()).unwrap_or(u64::MAX);
@@ -218,6 +219,7 @@ impl Workbench {
         if let Some(recorder) = &mut self.recorder {
             recorder.changed(&change);
             recorder.forced(&self.state);
+            recorder.stopped(self.state.machine.controller().stopped().as_ref());
         }
         self.history.changed(change, &self.state);
         Ok(())

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use ladder::Value;
+use sim::scenario::Stop;
 use sim::scenario::spell::{duration, literal, quoted};
 
 use super::change::{Change, ModeChange};
@@ -29,6 +30,8 @@ pub struct Recorder {
     forced: BTreeSet<String>,
     /// Entering run changes data: what was written before must be written before it.
     prescan: bool,
+    /// The controller has stopped, as far as is known.
+    stopped: bool,
     full: bool,
 }
 
@@ -40,7 +43,16 @@ struct Step {
     sets: Vec<(String, Value)>,
     dt: Duration,
     scans: u64,
+    /// Major fault at its end.
+    fault: Option<u16>,
     expect: Vec<(String, Value)>,
+}
+
+impl Step {
+    /// What is changed now belongs to it: nothing came behind its changes yet.
+    fn is_open(&self) -> bool {
+        self.scans == 0 && self.fault.is_none() && self.expect.is_empty()
+    }
 }
 
 /// How a recording names its program.
@@ -69,7 +81,7 @@ impl Recorder {
         // A change behind an expectation is another step, as one behind a scan. A step enters run before it writes, so run
         // behind something written is another one too, where a prescan would change that.
         let enters = self.prescan && matches!(change, Change::Mode(ModeChange::Run | ModeChange::PowerCycle));
-        let begun = |step: &Step| step.scans == 0 && step.expect.is_empty() && (!enters || step.sets.is_empty());
+        let begun = |step: &Step| step.is_open() && (!enters || step.sets.is_empty());
         let begun = self.steps.last().is_some_and(begun);
         if !begun {
             if self.steps.len() == STEPS {
@@ -123,7 +135,7 @@ impl Recorder {
                 (Point::Output | Point::ReadBack, _) => {}
             }
         }
-        let Some(step) = self.steps.last_mut().filter(|step| step.scans == 0 && step.expect.is_empty()) else { return };
+        let Some(step) = self.steps.last_mut().filter(|step| step.is_open()) else { return };
         for (name, value) in reads {
             step.sets.retain(|(other, _)| *other != name);
             step.sets.push((name, value));
@@ -138,7 +150,11 @@ impl Recorder {
         let full = self.steps.len() == STEPS;
         match self.steps.last_mut() {
             // The first scan of run passes no time, whatever the step says.
-            Some(last) if last.expect.is_empty() && (last.scans == 0 || last.dt.is_zero() || last.dt == dt) => {
+            Some(last)
+                if last.expect.is_empty()
+                    && last.fault.is_none()
+                    && (last.scans == 0 || last.dt.is_zero() || last.dt == dt) =>
+            {
                 last.scans += 1;
                 self.scans += 1;
                 last.dt = dt;
@@ -148,6 +164,18 @@ impl Recorder {
                 self.steps.push(Step { dt, scans: 1, ..Step::default() });
                 self.scans += 1;
             }
+        }
+    }
+
+    /// Whether the controller has stopped, behind a change or a scan: a fault that came is expected where it came.
+    pub fn stopped(&mut self, stop: Option<&Stop>) {
+        let came = stop.filter(|_| !self.stopped);
+        self.stopped = stop.is_some();
+        let Some(stop) = came.filter(|_| !self.full) else { return };
+        match self.steps.last_mut() {
+            // Without a code a scenario says that there is no fault.
+            Some(step) if stop.code != 0 => step.fault = Some(stop.code),
+            _ => self.note(&format!("{}: a fault without a code, which a scenario cannot expect", stop.text)),
         }
     }
 
@@ -207,6 +235,9 @@ impl Recorder {
                     let _ = writeln!(text, "scan = {}", duration(step.dt));
                 }
                 let _ = writeln!(text, "scans = {}", step.scans);
+            }
+            if let Some(code) = step.fault {
+                let _ = writeln!(text, "fault = \"{code:04X}\"");
             }
             table(&mut text, "expect", &step.expect);
         }
