@@ -64,7 +64,7 @@ export async function open(app, address) {
       : el("div", { class: "row", role: "group", ariaLabel: "Force" }, force(true, "Force on"), force(false, "Force off"), force(null, "Remove force")),
     members.length ? null : el("div", { class: "row" },
       button("Watch", "Add to the watch list", () => app.watch(found.address)),
-      button("Trend", "Add to the trend", () => app.trend(found.address))),
+      app.readOnly ? null : button("Trend", "Add to the trend", () => app.trend(found.address))),
     el("h3", {}, `Cross reference (${found.uses.length + found.left_out})`),
     el("ul", { class: "uses" }, found.uses.map((use) => el("li", {},
       button(`${app.routineName(use.routine)} rung ${use.rung}`, "Go to the rung", () => app.goto(use.routine, use.rung), { class: "link" }),

@@ -70,6 +70,7 @@ export function actions(app, { bit = null, forcible = false, values = [], addres
   const all = [...new Set([...(bit ? [bit] : []), ...addresses, ...values])];
   for (const address of all) items.push([`Cross reference of ${address}`, () => app.open(address)]);
   for (const address of all) items.push([`Watch ${address}`, () => app.watch(address)]);
-  for (const address of [...(bit ? [bit] : []), ...values]) items.push([`Trend of ${address}`, () => app.trend(address)]);
+  // What is followed is the same for all who look.
+  if (!app.readOnly) for (const address of [...(bit ? [bit] : []), ...values]) items.push([`Trend of ${address}`, () => app.trend(address)]);
   return items;
 }

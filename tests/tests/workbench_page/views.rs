@@ -389,6 +389,11 @@ fn who_may_only_look_can_change_nothing() {
     browser.run("document.querySelector('svg.rung g.i').focus()");
     browser.keys(key::ENTER);
     browser.wait_for("document.querySelector('#menu').matches(':popover-open')");
-    assert!(!browser.is("/Toggle|Force|Edit/.test(document.querySelector('#menu').textContent)"));
+    assert!(!browser.is("/Toggle|Force|Edit|Trend/.test(document.querySelector('#menu').textContent)"));
+    browser.run(
+        "[...document.querySelectorAll('#menu [role=menuitem]')].find((one) => /^Cross/.test(one.textContent)).click()",
+    );
+    browser.wait_for("!document.querySelector('#detail').hidden");
+    assert!(!browser.is("/Force|Write|Trend/.test(document.querySelector('#detail').textContent)"));
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
