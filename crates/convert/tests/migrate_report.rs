@@ -113,3 +113,15 @@ fn hostile_texts_stay_texts() {
         migrate(&image, &rows, &Options::default()).unwrap_or_else(|error| panic!("{text}: {error}"));
     }
 }
+
+#[test]
+fn timers_not_executed_in_every_scan_are_named() {
+    let rung = "XIC B3:0/0 TON T4:0 0.01 500 0";
+    let told = |files: &[(u16, &str)]| {
+        let migration = migrate(&image(Family::Slc503, files), &[], &Options::default()).expect("migrates");
+        let notes = migration.notes.iter().map(ToString::to_string);
+        notes.filter(|note| note.starts_with("TIMER-BASE: T4:0 ") && note.contains("11.5 days")).count()
+    };
+    assert_eq!(told(&[(2, rung)]), 0);
+    assert_eq!(told(&[(2, "XIC B3:0/1 JSR 3"), (3, rung)]), 1);
+}

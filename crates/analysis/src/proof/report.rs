@@ -147,11 +147,12 @@ pub struct Driven {
 }
 
 /// What no run exercises, whatever the program.
-pub const NOT_MODELLED: [&str; 4] = [
+pub const NOT_MODELLED: [&str; 5] = [
     "loss of power: only leaving and entering run is tried",
     "inputs and communication that change during a scan, and the time a scan takes itself",
     "times between scans that are no whole milliseconds",
     "forces, hardware faults and messages of other controllers",
+    "a timer that is timing while nothing executes it for more than eleven days",
 ];
 
 impl Report {

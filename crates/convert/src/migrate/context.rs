@@ -85,6 +85,8 @@ pub struct Needs {
     pub elapsed: bool,
     /// The running millisecond count is needed, for what is not executed in every scan.
     pub now: bool,
+    /// Timers that are not executed in every scan, as `T4:0`.
+    pub apart: BTreeSet<String>,
     /// Bits that are switched off in the first scan after entering RUN, before all rungs.
     pub clear: BTreeSet<String>,
     /// The same of bits that are found at run time.

@@ -362,6 +362,12 @@ fn notes(image: &Image, context: &Context<'_>) -> Vec<Note> {
         let text = "overflow (S:5/0) and control register errors (S:5/2) stop the original at the end of the scan";
         notes.push(Note::new(Mark::Fault, format!("{text}: {here}")));
     }
+    if !context.needs.apart.is_empty() {
+        let timers: Vec<&str> = context.needs.apart.iter().map(String::as_str).collect();
+        let text = "not executed in every scan: the time between two executions counts, up to 11.5 days; what the original \
+                    counts there is documented up to 2.5 s";
+        notes.push(Note::new(Mark::TimerBase, format!("{} {text}", timers.join(", "))));
+    }
     if context.reads_rtc || context.status_words.iter().any(|word| *word > 35) {
         let text = "the program reads the clock: set the Do-more clock to the time of the original's";
         notes.push(Note::new(Mark::Clock, text));

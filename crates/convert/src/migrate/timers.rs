@@ -56,6 +56,9 @@ impl Timer {
         let fresh;
         // Two instructions on one timer: the second finds no time gone.
         if context.conditional || parts.instructions(context) > 1 {
+            if context.conditional {
+                context.needs.apart.insert(parts.name().to_owned());
+            }
             let now = context.now();
             let last = nickname(&parts, "at");
             let last = context.helper(Block::D, &last, &format!("{}: time of its last execution", parts.name()));
