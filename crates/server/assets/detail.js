@@ -19,7 +19,7 @@ export function close(app) {
 }
 
 /** Addresses of the members of a whole element: of `T4:0` its bits and words. */
-async function parts(app, address) {
+export async function parts(app, address) {
   const label = (/^([A-Z]+\d*):\d+$/i.exec(address) ?? (app.project.dialect === "slc" ? null : /^([A-Z]+)\d+$/i.exec(address)))?.[1].toUpperCase();
   const file = app.project.data_files.find((one) => one.label.toUpperCase() === label);
   if (!file) return [];

@@ -1,7 +1,7 @@
 // The page: the project tree, what is shown, and the keys.
 
 import { Live, get, post, tell } from "./api.js";
-import { close, open } from "./detail.js";
+import { close, open, parts } from "./detail.js";
 import { button, byId, el } from "./dom.js";
 import { fault } from "./fault.js";
 import { help } from "./help.js";
@@ -203,8 +203,13 @@ class App {
     } catch { /* It holds until the page is left. */ }
   }
 
-  watch(address) {
-    if (!this.watched.includes(address)) this.watched.push(address);
+  /** Follows an address; a whole timer, counter or control element stands for all its members. */
+  async watch(address) {
+    const prefix = this.other && address.startsWith(this.other.prefix) ? this.other.prefix : "";
+    const members = await parts(prefix ? this.other : this, address.slice(prefix.length));
+    for (const one of members.length ? members.map((member) => prefix + member) : [address]) {
+      if (!this.watched.includes(one)) this.watched.push(one);
+    }
     this.#keep();
     tell(`${address} is in the watch list.`);
   }

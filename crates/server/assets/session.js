@@ -12,8 +12,8 @@ export function session(app, view) {
   const relation = el("select", { ariaLabel: "Relation" }, ["=", "<>", "<", "<=", ">", ">="].map((one) => el("option", { value: one }, one)));
   const until = el("form", { class: "row", on: { submit: (event) => {
     event.preventDefault();
-    if (!value.value.trim() || !Number.isFinite(Number(value.value))) {
-      tell(`${value.value || "Nothing"} is no number.`, "wrong");
+    if (!address.value.trim() || !value.value.trim() || !Number.isFinite(Number(value.value))) {
+      tell(value.value.trim() && address.value.trim() ? `${value.value} is no number.` : "Enter an address and a number to compare it with.", "wrong");
       return;
     }
     control({ do: "until", address: address.value.trim(), relation: relation.value, value: Number(value.value), scans: null });
@@ -21,7 +21,7 @@ export function session(app, view) {
   const kept = el("ul", { class: "plain" });
   const keep = el("form", { class: "row", on: { submit: (event) => {
     event.preventDefault();
-    control({ do: "keep", name: name.value.trim() });
+    control({ do: "keep", name: name.value.trim() || `scan ${app.live.status.scans}` });
   } } }, field("Name", name), el("button", { type: "submit", id: "keep" }, "Keep this state"));
   const scenario = el("pre", { tabIndex: 0, ariaLabel: "Scenario", role: "region" });
   const problems = el("ul", { class: "problems" });

@@ -174,7 +174,10 @@ export function forces(app, view) {
   const body = el("tbody");
   const enabled = el("button", { type: "button", on: { click: () => control({ do: "forces", enabled: !app.live.status.forces_enabled }) } });
   const address = el("input", { type: "text", ariaLabel: "Address to force", placeholder: "I:0.0/3", size: 12, autocomplete: "off" });
-  const install = (state) => post("/api/force", { address: address.value.trim(), state });
+  const install = (state) => {
+    if (address.value.trim()) post("/api/force", { address: address.value.trim(), state });
+    else tell("Enter the address of an input or output.", "wrong");
+  };
   view.replaceChildren(el("h2", {}, "Forces"),
     app.readOnly ? null : el("div", { class: "row" }, enabled, button("Remove all", "Remove all forces", () => control({ do: "clear-forces" }))),
     app.readOnly ? null : el("div", { class: "row" }, address, button("Force on", "Force on", () => install(true)), button("Force off", "Force off", () => install(false))),
@@ -211,7 +214,7 @@ export async function watch(app, view) {
     if (!text) return;
     try {
       // Symbols are followed by their address.
-      app.watch((await known(text)).address);
+      await app.watch((await known(text)).address);
       await again();
       byId("view").querySelector("form input")?.focus();
     } catch (problem) {

@@ -105,6 +105,10 @@ fn the_watch_list_is_kept_and_values_take_every_radix() {
     browser.wait_for(&format!("{} === '500'", cell("T4:0.PRE")));
     browser.click("#view button[title='Remove O:0.0/1']");
     browser.wait_for("document.querySelectorAll('#view tbody tr').length === 1");
+    // A whole timer stands for its members.
+    browser.click("#view form input");
+    browser.keys(&format!("T4:1{}", key::ENTER));
+    browser.wait_for("[...document.querySelectorAll('#view tbody th')].map((one) => one.textContent).join().endsWith('T4:1/EN,T4:1/TT,T4:1/DN,T4:1.PRE,T4:1.ACC')");
     // Data tables show and take every radix.
     show(&browser, &page, "data/N7");
     browser.click("#view .cell[data-address='N7:0']");
@@ -344,6 +348,8 @@ fn a_do_more_project_goes_the_same_way() {
     steps(&browser, 1);
     browser.wait_for(&format!("{contact}.matches('.on') === {}", !was));
     browser.keys("b");
+    // Source and destination of a MOVE have their values in its box.
+    browser.wait_for("[...document.querySelectorAll('g.i')].some((one) => one.querySelector('title')?.textContent.startsWith('MOVE') && one.querySelectorAll('text.live').length === 2)");
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 

@@ -162,7 +162,7 @@ fn instruction(instruction: &Instruction) -> InstructionView {
         match entry.and_then(|entry| entry.operand(index)).map(|operand| operand.kind) {
             Some(Kind::Bit) if index == 0 => bit = Some(operand.clone()),
             Some(Kind::Timer | Kind::Counter) => values.push(value(format!("{operand}.Acc"))),
-            Some(Kind::Number) => values.push(value(operand.clone())),
+            Some(Kind::Number | Kind::Value) => values.push(value(operand.clone())),
             _ => {}
         }
     }
