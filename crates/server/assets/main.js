@@ -144,21 +144,25 @@ class App {
 
   /** Shows a view; what the one before followed is followed no more. */
   async show(view) {
+    const mine = (this.showing = Symbol("view"));
+    // One that is still being made would take the place of the one after it.
+    await this.making;
+    if (this.showing !== mine) return;
+    this.making = this.#make(view, mine);
+    await this.making;
+  }
+
+  async #make(view, mine) {
     this.stop?.();
     this.stop = null;
-    const mine = (this.showing = Symbol("view"));
     byId("view").scrollTop = 0;
-    let stop;
     try {
-      stop = await view();
+      this.stop = await view();
     } catch (problem) {
       byId("view").replaceChildren(el("p", { class: "wrong" }, problem.message));
       return;
     }
-    if (this.showing === mine) {
-      this.stop = stop;
-      byId("view").dataset.shown = location.hash;
-    } else stop?.();
+    if (this.showing === mine) byId("view").dataset.shown = location.hash;
   }
 
   goView(name) {
@@ -185,6 +189,11 @@ class App {
     const prefix = this.other && address.startsWith(this.other.prefix) ? this.other.prefix : "";
     const found = await get(`${prefix ? this.other.api : this.api}/uses?address=${encodeURIComponent(address.slice(prefix.length))}`);
     return { ...found, address: prefix + found.address };
+  }
+
+  /** The address of a symbol a person typed, or what was typed. */
+  async address(text) {
+    return (await this.uses(text.trim()).catch(() => null))?.address ?? text.trim();
   }
 
   /** The watch list of this program, as it was when the page was left. */

@@ -10,13 +10,13 @@ export function session(app, view) {
   const text = (placeholder, size = 14) => el("input", { type: "text", placeholder, size, autocomplete: "off" });
   const [address, value, name, title] = [text("T4:0.ACC"), text("100", 8), text("before start"), text("pump starts", 24)];
   const relation = el("select", { ariaLabel: "Relation" }, ["=", "<>", "<", "<=", ">", ">="].map((one) => el("option", { value: one }, one)));
-  const until = el("form", { class: "row", on: { submit: (event) => {
+  const until = el("form", { class: "row", on: { submit: async (event) => {
     event.preventDefault();
     if (!address.value.trim() || !value.value.trim() || !Number.isFinite(Number(value.value))) {
       tell(value.value.trim() && address.value.trim() ? `${value.value} is no number.` : "Enter an address and a number to compare it with.", "wrong");
       return;
     }
-    control({ do: "until", address: address.value.trim(), relation: relation.value, value: Number(value.value), scans: null });
+    control({ do: "until", address: await app.address(address.value), relation: relation.value, value: Number(value.value), scans: null });
   } } }, field("Address", address), relation, field("Value", value), el("button", { type: "submit", id: "until" }, "Run until"));
   const kept = el("ul", { class: "plain" });
   const keep = el("form", { class: "row", on: { submit: (event) => {

@@ -174,9 +174,9 @@ export function forces(app, view) {
   const body = el("tbody");
   const enabled = el("button", { type: "button", on: { click: () => control({ do: "forces", enabled: !app.live.status.forces_enabled }) } });
   const address = el("input", { type: "text", ariaLabel: "Address to force", placeholder: "I:0.0/3", size: 12, autocomplete: "off" });
-  const install = (state) => {
-    if (address.value.trim()) post("/api/force", { address: address.value.trim(), state });
-    else tell("Enter the address of an input or output.", "wrong");
+  const install = async (state) => {
+    if (!address.value.trim()) tell("Enter the address of an input or output.", "wrong");
+    else post("/api/force", { address: await app.address(address.value), state });
   };
   view.replaceChildren(el("h2", {}, "Forces"),
     app.readOnly ? null : el("div", { class: "row" }, enabled, button("Remove all", "Remove all forces", () => control({ do: "clear-forces" }))),

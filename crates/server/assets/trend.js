@@ -51,9 +51,10 @@ export function trend(app, view) {
     save("trend.csv", new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
   };
   view.replaceChildren(el("h2", {}, "Trend"),
-    el("form", { class: "row", on: { submit: (event) => {
+    el("form", { class: "row", on: { submit: async (event) => {
       event.preventDefault();
-      if (address.value.trim()) follow([...followed(), address.value.trim()]);
+      const one = address.value.trim() && (await app.address(address.value));
+      if (one) await follow([...new Set([...followed(), one])]);
     } } }, app.readOnly ? null : [address, el("button", { type: "submit" }, "Follow")],
       el("label", {}, "Span ", spans),
       button("CSV", "Save as a table", csv),

@@ -160,6 +160,22 @@ fn search_leads_to_uses_and_rungs() {
     assert_eq!(browser.complaints(), Vec::<String>::new());
 }
 
+/// Whoever is quicker than a view sees the one chosen last.
+#[test]
+fn a_view_that_comes_late_takes_no_others_place() {
+    let Some(browser) = Browser::start() else { return };
+    let page = motor();
+    show(&browser, &page, "points");
+    browser.run(
+        "const real = fetch; window.fetch = async (path, options) => { \
+            if (/heights/.test(path)) await new Promise((done) => setTimeout(done, 400)); return real(path, options); }; \
+            location.hash = 'ladder/2'; setTimeout(() => { location.hash = 'timers'; }, 100); setTimeout(() => { window.late = true; }, 1500)",
+    );
+    browser.wait_for("window.late");
+    assert_eq!(browser.text("#view h2"), "Timers and counters");
+    assert_eq!(browser.complaints(), Vec::<String>::new());
+}
+
 /// Documentation leads to what it is about, a call to what it calls.
 #[test]
 fn what_is_found_and_what_is_called_can_be_gone_to() {
