@@ -9,7 +9,7 @@ use crate::{Outcome, run, target_directory};
 const TESTER: &str = "schemathesis==4.32.5";
 
 /// Set to 1, tests that need it say that they are skipped.
-const WITHOUT: &str = "RUNGS_NO_API_TESTER";
+pub(crate) const WITHOUT: &str = "RUNGS_NO_API_TESTER";
 
 /// Where the tests look for it.
 fn environment() -> std::path::PathBuf {
@@ -21,14 +21,22 @@ fn program(name: &str) -> std::path::PathBuf {
     environment().join(folder).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Installs it where it is missing. Without Python or packages this says what is missing and is no failure; the tests
-/// fail then, each with a plain line.
+fn stamp() -> std::path::PathBuf {
+    environment().join("rungs-version")
+}
+
+/// Whether it is installed.
+pub(crate) fn is_there() -> bool {
+    std::fs::read_to_string(stamp()).is_ok_and(|version| version == TESTER)
+}
+
+/// Installs it where it is missing. Without Python or packages this says what is missing and is no failure: `cargo
+/// xtask test` leaves the tests out then and says so, `cargo test` by itself fails.
 pub(crate) fn setup() -> Outcome {
-    let stamp = environment().join("rungs-version");
-    let there = std::fs::read_to_string(&stamp).is_ok_and(|version| version == TESTER);
-    if there || std::env::var_os(WITHOUT).is_some_and(|value| value == "1") {
+    if is_there() || crate::is_left_out(WITHOUT) {
         return Ok(());
     }
+    let stamp = stamp();
     println!("installing {TESTER} into {}", environment().display());
     match install() {
         Ok(()) => std::fs::write(&stamp, TESTER).map_err(|why| format!("{}: {why}", stamp.display())),
@@ -45,7 +53,7 @@ fn install() -> Outcome {
     let python = if cfg!(windows) { "python" } else { "python3" };
     venv(python).or_else(|_| {
         // Debian keeps venv in a package of its own.
-        crate::apt(&["install", "-qy", "--no-install-recommends", "python3-venv"])?;
+        crate::apt(&["install", "-qy", "--no-install-recommends", "python3", "python3-venv"])?;
         venv(python)
     })?;
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", TESTER];

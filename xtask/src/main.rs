@@ -117,11 +117,16 @@ const AXE: (&str, &str) = ("axe-core", "4.14.1");
 /// Installs what is missing. Tests that need it fail plainly without it, or say that they are skipped with
 /// `RUNGS_NO_BROWSER=1`; so this is no failure where packages cannot be installed.
 fn setup() -> Outcome {
-    if std::env::var_os("RUNGS_NO_BROWSER").is_none_or(|value| value != "1") {
+    if !is_left_out("RUNGS_NO_BROWSER") {
         set_up_browser();
         set_up_axe();
     }
     api_tester::setup()
+}
+
+/// Whether a variable asks to leave tests out.
+fn is_left_out(variable: &str) -> bool {
+    std::env::var_os(variable).is_some_and(|value| value == "1")
 }
 
 fn set_up_browser() {
@@ -147,18 +152,33 @@ fn set_up_browser() {
     }
 }
 
+/// Set to 1, tests of pages run without looking at accessibility, and say so.
+const NO_AXE: &str = "RUNGS_NO_AXE";
+
+/// Whether the accessibility checker is there in the version of [`AXE`].
+fn has_axe() -> bool {
+    let (name, version) = AXE;
+    let package = root().join("target/npm/node_modules").join(name).join("package.json");
+    std::fs::read_to_string(package).is_ok_and(|text| text.contains(&format!("\"version\": \"{version}\"")))
+}
+
 /// Puts the accessibility checker below `target/npm`, where `tests/src/axe.rs` looks for it.
 fn set_up_axe() {
     let (name, version) = AXE;
     let folder = root().join("target/npm");
-    let installed = std::fs::read_to_string(folder.join("node_modules").join(name).join("package.json"));
-    if installed.is_ok_and(|text| text.contains(&format!("\"version\": \"{version}\""))) {
+    if has_axe() || is_left_out(NO_AXE) {
         return;
     }
     let package = format!("{name}@{version}");
     let lacks = |why: &str| println!("{why}: tests of accessibility need {package} below {}", folder.display());
+    if !on_path("npm") && on_path("apt-get") {
+        println!("installing npm");
+        if let Err(why) = apt(&["install", "-qy", "--no-install-recommends", "npm"]) {
+            println!("{why}");
+        }
+    }
     if !on_path("npm") {
-        lacks("npm is not here: install Node.js, or set RUNGS_NO_BROWSER=1");
+        lacks("npm is not here: install Node.js");
         return;
     }
     println!("installing {package}");
@@ -189,9 +209,20 @@ fn on_path(name: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
 }
 
+/// What could not be installed is left out, and this says so; `cargo test` by itself fails without it.
 fn test() -> Outcome {
     setup()?;
-    cargo(&["test", "--workspace", "--no-fail-fast"])
+    let mut command = cargo_command(&["test", "--workspace", "--no-fail-fast"]);
+    for (there, variable, what) in [
+        (has_axe(), NO_AXE, "accessibility of pages, as axe-core is not here"),
+        (api_tester::is_there(), api_tester::WITHOUT, "the workbench's interface, as schemathesis is not here"),
+    ] {
+        if !there {
+            println!("SKIPPED: tests of {what}");
+            command.env(variable, "1");
+        }
+    }
+    run(&mut command)
 }
 
 /// What `test` does with 500 programs and 300 scans, at full length.
