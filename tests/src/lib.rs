@@ -11,4 +11,5 @@ pub mod corpus;
 pub mod dice;
 pub mod drawing;
 pub mod printout;
+pub mod served;
 pub mod svg_boxes;

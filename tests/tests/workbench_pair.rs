@@ -3,10 +3,9 @@
 #[path = "../../crates/server/tests/support/pair.rs"]
 mod two;
 
-use std::net::SocketAddr;
-
 use rungs_tests::axe;
 use rungs_tests::browser::Browser;
+use rungs_tests::served;
 use server::workbench::Workbench;
 use server::{Access, engine};
 use two::Two;
@@ -19,17 +18,10 @@ fn serve(example: &str, changes: &[(&str, &str)], access: Access) -> String {
     let two = Two::of(example, changes);
     let pair = two.pair();
     let (program, pages) = two.views(&pair);
-    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-        runtime.block_on(async {
-            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-            told.send(listener.local_addr().expect("bound")).expect("the test waits");
-            let engine = engine::start(Workbench::new(Box::new(pair))).expect("a thread");
-            server::serve_pair(listener, engine, program, pages, access, std::future::pending()).await
-        })
-    });
-    format!("http://{}/", address.recv().expect("the server starts"))
+    served::until_the_end(move |listener| async {
+        let engine = engine::start(Workbench::new(Box::new(pair))).expect("a thread");
+        server::serve_pair(listener, engine, program, pages, access, std::future::pending()).await
+    })
 }
 
 fn open(browser: &Browser, page: &str) {
@@ -259,17 +251,10 @@ fn one_program_plays_a_tape_too() {
     let tape = server::workbench::Tape::read(text, bench.initial()).expect("reads");
     bench.play(tape).expect("plays");
     let view = server::view::SlcProgram::new("motor.RSS".to_owned(), two.original, Vec::new());
-    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-        runtime.block_on(async {
-            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-            told.send(listener.local_addr().expect("bound")).expect("the test waits");
-            let engine = engine::start(bench).expect("a thread");
-            server::serve(listener, engine, std::sync::Arc::new(view), Access::default(), std::future::pending()).await
-        })
+    let page = served::until_the_end(move |listener| async {
+        let engine = engine::start(bench).expect("a thread");
+        server::serve(listener, engine, std::sync::Arc::new(view), Access::default(), std::future::pending()).await
     });
-    let page = format!("http://{}/", address.recv().expect("the server starts"));
     browser.go(&format!("{page}#points"));
     browser.wait_for("document.querySelector('.tape')?.offsetHeight > 0");
     browser.click("#tape-step");

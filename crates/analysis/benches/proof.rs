@@ -1,6 +1,9 @@
 //! Scan pairs per second of a proof run on a program of 100 rungs: `cargo bench -p analysis --bench proof`.
 //! The baseline is the same two machines scanned in turn with nothing compared or watched, in the same run.
 
+#[path = "../tests/rungs/mod.rs"]
+mod rungs;
+
 use std::time::{Duration, Instant};
 
 use analysis::proof::{DoMore, Mapping, Options, Side, Slc, prove_domore};
@@ -13,10 +16,7 @@ const SCANS: u64 = 200_000;
 
 /// Contacts, latches, timers, counters, comparisons and arithmetic in the mix of a packaging line.
 fn hundred_rungs() -> Image {
-    let motor = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/motor/motor.SLC");
-    let bytes = std::fs::read(motor).expect("the example is there");
-    let mut image = convert::open(&bytes, "motor.SLC", rss::Mode::Permissive).expect("reads").main;
-    let family = Some(image.processor.family);
+    let mut image = rungs::motor();
     let base = ladder::TimeBase::from_text("0.01").expect("a time base").control_bits();
     for (file_type, number) in [(FileType::B, 3), (FileType::T, 4), (FileType::C, 5), (FileType::N, 7)] {
         image.data_files.retain(|file| file.file_type != file_type);
@@ -44,12 +44,7 @@ fn hundred_rungs() -> Image {
         rungs.push(format!("XIC B3:{n}/3 CTU C5:{n} 30 0"));
         rungs.push(format!("XIC B3:{n}/0 GEQ C5:{n}.ACC 10 BST MOV {n} N7:{n} NXB OTL B3:{n}/5 BND"));
     }
-    let file = image.program_files.iter_mut().find(|file| file.number == 2).expect("a main program");
-    let end = file.rungs.pop().expect("an END rung");
-    file.rungs = rungs.iter().map(|text| convert::slc::rung::parse_rung(text, family).expect("a rung")).collect();
-    file.rungs.push(end);
-    image.program_files.retain(|file| file.number <= 2);
-    image
+    rungs::with(image, &rungs)
 }
 
 fn main() {

@@ -1,5 +1,7 @@
 //! What belongs together in two programs: every name leads to its place on the other side and back, or nowhere.
 
+mod rungs;
+
 use std::sync::Arc;
 
 use analysis::proof::{
@@ -8,16 +10,7 @@ use analysis::proof::{
 use ladder::{Image, Value};
 
 fn image(rungs: &[&str]) -> Image {
-    let motor = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/motor/motor.SLC");
-    let bytes = std::fs::read(motor).expect("the example is there");
-    let mut image = convert::open(&bytes, "motor.SLC", rss::Mode::Permissive).expect("reads").main;
-    let family = Some(image.processor.family);
-    let file = image.program_files.iter_mut().find(|file| file.number == 2).expect("a main program");
-    let end = file.rungs.pop().expect("an END rung");
-    file.rungs = rungs.iter().map(|text| convert::slc::rung::parse_rung(text, family).expect("a rung")).collect();
-    file.rungs.push(end);
-    image.program_files.retain(|file| file.number <= 2);
-    image
+    rungs::with(rungs::motor(), rungs)
 }
 
 const RUNGS: [&str; 4] = [

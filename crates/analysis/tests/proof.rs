@@ -1,6 +1,7 @@
 //! Proof runs: what they find, what they refuse to call equal, and whether what they write can be run again.
 
 mod migrated;
+mod rungs;
 
 use analysis::proof::{Difference, Kind, Mapping, Named, Options, Report, RungFate, Verdict, prove_domore, prove_slc};
 use ladder::Image;
@@ -8,15 +9,7 @@ use sim::scenario::{Loader, Scenario, Subject};
 
 /// An SLC text with the data files these rungs need.
 fn program(rungs: &[&str]) -> Image {
-    let motor = std::fs::read(migrated::root().join("examples/motor/motor.SLC")).expect("the example is there");
-    let mut image = convert::open(&motor, "motor.SLC", rss::Mode::Permissive).expect("reads").main;
-    let family = Some(image.processor.family);
-    let file = image.program_files.iter_mut().find(|file| file.number == 2).expect("a main program");
-    let end = file.rungs.pop().expect("an END rung");
-    file.rungs = rungs.iter().map(|text| convert::slc::rung::parse_rung(text, family).expect("a rung")).collect();
-    file.rungs.push(end);
-    image.program_files.retain(|file| file.number <= 2);
-    image
+    rungs::with(rungs::motor(), rungs)
 }
 
 fn options(scans: u64) -> Options {

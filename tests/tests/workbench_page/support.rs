@@ -1,10 +1,10 @@
 //! Programs, the server that shows them, and what a person does on its page.
 
-use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::Arc;
 
 use rungs_tests::browser::Browser;
+use rungs_tests::served;
 use server::plant::Plant;
 use server::view::{DoMoreProgram, Program, SlcProgram};
 use server::workbench::{Change, DoMore, Slc, Subject, Workbench};
@@ -51,17 +51,10 @@ pub(crate) fn serve_to(
         let plant = Plant::parse(&text).unwrap_or_else(|why| panic!("{name}: {why}"));
         bench.change(Change::Plant(Some(Box::new(plant)))).expect("wires");
     }
-    let (told, address) = std::sync::mpsc::channel::<SocketAddr>();
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
-        runtime.block_on(async {
-            let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a free port");
-            told.send(listener.local_addr().expect("bound")).expect("the test waits");
-            let engine = engine::start(bench).expect("a thread");
-            server::serve(listener, engine, program, access, std::future::pending()).await
-        })
-    });
-    format!("http://{}/", address.recv().expect("the server starts"))
+    served::until_the_end(move |listener| async {
+        let engine = engine::start(bench).expect("a thread");
+        server::serve(listener, engine, program, access, std::future::pending()).await
+    })
 }
 
 pub(crate) fn motor() -> String {
