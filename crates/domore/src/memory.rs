@@ -195,6 +195,11 @@ impl Block {
         INPUTS.iter().any(|name| self.name.eq_ignore_ascii_case(name))
     }
 
+    /// Its bits in all memory.
+    pub fn bits(&self) -> Range<u32> {
+        self.start..self.start.saturating_add(self.count.saturating_mul(self.element.bits()))
+    }
+
     /// Its bytes in all memory.
     pub fn bytes(&self) -> Range<usize> {
         let start = (self.start >> 3) as usize;

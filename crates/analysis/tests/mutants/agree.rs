@@ -116,10 +116,7 @@ impl<'w> Walk<'w> {
         let mut elements: HashMap<(usize, u32), Vec<u32>> = HashMap::new();
         for bit in varying {
             let blocks = self.model.map.blocks();
-            let found = blocks
-                .iter()
-                .position(|block| (block.start..block.start + block.count * block.element.bits()).contains(bit));
-            let Some(index) = found else { continue };
+            let Some(index) = blocks.iter().position(|block| block.bits().contains(bit)) else { continue };
             let block = &blocks[index];
             // The system's own memory is written anew in every scan.
             if !matches!(block.name.as_str(), "ST" | "DST" | "SDT") {
@@ -215,7 +212,11 @@ impl<'w> Walk<'w> {
             // The clock comes from outside in every scan.
             if !driven.address.starts_with("SDT0") {
                 let data = self.machine.data();
-                let word = (0..bits).map(|bit| u32::from(data.bit(place.bit + bit))).collect();
+                // What is not changed may hold what nobody writes there.
+                let blocks = self.model.map.blocks();
+                let terminal = blocks.iter().any(|block| block.is_input() && block.bits().contains(&place.bit));
+                let told = |at: u32| u32::from((changes || terminal) && data.bit(at));
+                let word = (0..bits).map(|bit| told(place.bit + bit)).collect();
                 writes.push((place.bit, word, u32::from(changes)));
             }
         }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::gates::{Answer, Gates, Line, OFF, value};
 use super::words::{Word, bit};
 
-/// Block, rung, and how often the block ran before in this scan.
+/// Block, rung, and how often it ran before in this scan.
 pub(crate) type Visit = (usize, usize, usize);
 
 /// An instruction of a rung that is visited.

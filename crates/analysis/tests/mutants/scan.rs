@@ -26,6 +26,8 @@ pub(crate) const HALTED: u32 = HIDDEN;
 /// Elements an index may choose from.
 const MOST_CHOICES: i64 = 1024;
 const MOST_CALLS: usize = 16;
+/// Runs of a rung in a scan.
+const MOST_RUNS: usize = 2000;
 
 /// A timer that was not enabled when it was processed last.
 fn fresh(timer: u32) -> u32 {
@@ -130,11 +132,7 @@ impl<'m> Model<'m> {
 
     /// What a bit is called.
     pub(crate) fn name(&self, bit: u32) -> String {
-        let block = self
-            .map
-            .blocks()
-            .iter()
-            .find(|block| (block.start..block.start + block.count * block.element.bits()).contains(&bit));
+        let block = self.map.blocks().iter().find(|block| block.bits().contains(&bit));
         match block {
             Some(block) => {
                 let (offset, size) = (bit - block.start, block.element.bits());
@@ -168,8 +166,8 @@ pub(crate) struct Scan<'s, S: Start> {
     change: Option<Change<'s>>,
     pub(crate) memory: HashMap<u32, Line>,
     time: Word,
-    /// How often each block ran in this scan.
-    runs: HashMap<usize, usize>,
+    /// How often each rung of a block ran in this scan.
+    runs: HashMap<(usize, usize), usize>,
     /// The instruction that writes now.
     step: Option<Step>,
     /// What is written, where that is noted.
@@ -288,7 +286,7 @@ impl<'s, S: Start> Scan<'s, S> {
         }
         let model = self.model;
         for block in model.map.blocks().iter().filter(|block| block.is_input()) {
-            for bit in block.start..block.start + block.count * block.element.bits() {
+            for bit in block.bits() {
                 self.put(bit, read.get(&bit).copied().unwrap_or(OFF), ON);
             }
         }
@@ -313,21 +311,50 @@ impl<'s, S: Start> Scan<'s, S> {
         if depth > MOST_CALLS {
             return Err("calls are nested too deeply".to_owned());
         }
-        let run = *self.runs.entry(block).and_modify(|run| *run += 1).or_insert(0);
-        for number in 0..self.model.blocks[block].rungs.len() {
+        // Loops under way: the rung behind REPEAT, and the power of what runs behind UNTIL.
+        let mut loops: Vec<(usize, Line)> = Vec::new();
+        let mut active = power;
+        let mut number = 0;
+        while number < self.model.blocks[block].rungs.len() {
+            let run = *self.runs.entry((block, number)).and_modify(|run| *run += 1).or_insert(0);
+            if run > MOST_RUNS {
+                return Err("a loop that takes long".to_owned());
+            }
+            let visit = (block, number, run);
+            let mut next = number + 1;
             if let Some(rung) = self.model.rung((block, number), self.change) {
+                let first = rung.instructions.first();
                 if rung.instructions.iter().any(|it| it.is("RET")) {
-                    return if rung.instructions.len() == 1 { Ok(()) } else { Err("RET in a rung".to_owned()) };
+                    let alone = rung.instructions.len() == 1 && loops.is_empty();
+                    return if alone { Ok(()) } else { Err("RET in a rung or loop".to_owned()) };
                 }
-                self.one(rung, (block, number, run), power, depth)?;
+                if first.is_some_and(|it| it.is("REPEAT")) {
+                    loops.push((next, active));
+                } else if let Some(until) = first.filter(|it| it.is("UNTIL")) {
+                    let (start, around) = loops.pop().ok_or("UNTIL without REPEAT")?;
+                    let over = self.contact(Test::On, until)?;
+                    active = self.gates.and(active, over ^ 1);
+                    if active == OFF {
+                        active = around;
+                    } else {
+                        loops.push((start, around));
+                        next = start;
+                    }
+                } else {
+                    if !loops.is_empty() && timers_of(rung) > 0 {
+                        return Err("a timer in a loop".to_owned());
+                    }
+                    self.one(rung, visit, active, depth)?;
+                }
             }
             if self.change.is_some_and(|change| change.place == (block, number)) {
-                self.meet((block, number, run), None);
+                self.meet(visit, None);
             } else if let Some(notes) = &mut self.notes {
-                notes.end((block, number, run), &self.memory);
+                notes.end(visit, &self.memory);
             }
+            number = next;
         }
-        Ok(())
+        if loops.is_empty() { Ok(()) } else { Err("REPEAT without UNTIL".to_owned()) }
     }
 
     /// Takes bits for those the other program has behind the same rung or instruction where they cannot differ, so

@@ -133,10 +133,7 @@ impl Compiled {
             Resolved::Constant(value) => Ok(Span::Constant(value)),
             Resolved::Structure(..) => Err(format!("{text}: structures are copied by member only")),
             Resolved::Place(place) => {
-                let holds = |block: &&Block| {
-                    (block.start..block.start + block.count * block.element.bits()).contains(&place.bit)
-                };
-                let block = self.map.blocks().iter().find(holds);
+                let block = self.map.blocks().iter().find(|block| block.bits().contains(&place.bit));
                 let block = block.ok_or_else(|| format!("{text}: no element that a range begins with"))?;
                 // A member or part is a range of its own.
                 let alone =
