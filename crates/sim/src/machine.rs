@@ -187,6 +187,13 @@ impl Machine {
         Duration::from_nanos(self.state.now)
     }
 
+    /// How long from now until the timed interrupt expires next, and its period; `None` while none is running.
+    pub fn timed_interrupt(&self) -> Option<(Duration, Duration)> {
+        let timed = &self.state.timed;
+        let left = timed.next.saturating_sub(self.state.now);
+        (timed.period > 0).then(|| (Duration::from_nanos(left), Duration::from_nanos(timed.period)))
+    }
+
     /// Scans since the machine was made.
     pub fn scans(&self) -> u64 {
         self.state.scans

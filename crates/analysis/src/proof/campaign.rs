@@ -26,6 +26,8 @@ pub(super) struct Entry<B> {
     /// How often it was gone on from.
     used: u32,
     standing: Vec<Standing>,
+    /// Microseconds since power-up.
+    pub(super) age: u64,
 }
 
 /// A timer that is timing and yet does not count, since nothing executes it: its accumulated value, and for how
@@ -76,9 +78,13 @@ pub(crate) struct Campaign<'c, B: Side> {
     pub(crate) outside: u64,
     pub(crate) time: Duration,
     pub(super) budget: u64,
-    /// A timed interrupt runs in the original: times between scans stay short, so that it comes no more
+    /// A timed interrupt runs in the original: times between scans stay so short that it comes no more
     /// than once between two of them.
-    short: bool,
+    pub(super) short: bool,
+    /// Drifts made.
+    pub(super) drifts: u32,
+    /// A program with a timed interrupt was brought to where clocks start anew.
+    pub(super) aged: bool,
     /// States before something that comes with time, by number in the corpus.
     pub(super) eves: Vec<usize>,
     /// Goals at instructions with words that are inputs.
@@ -91,6 +97,8 @@ pub(crate) struct Campaign<'c, B: Side> {
     met: HashSet<u64>,
     /// Each of the timers.
     standing: Vec<Standing>,
+    /// Microseconds since power-up.
+    pub(super) age: u64,
     /// One of them has stood too long for a conversion to count: nothing follows from this stretch any more.
     lapsed: bool,
     /// A machine to look ahead with.
@@ -125,7 +133,8 @@ const LONGEST_RECIPE: usize = 2500;
 const MOST_MET: usize = 800;
 /// TT of the flags of a timer.
 pub(super) const TIMING: u16 = 0x4000;
-/// Longest time before a scan beside a timed interrupt, in microseconds: the shortest period there is.
+/// Longest time before a scan where a timed interrupt could be started in it, in microseconds: the shortest period
+/// there is.
 const SHORT_PACE: u32 = 10_000;
 
 impl<'c, B: Side> Campaign<'c, B> {
@@ -171,12 +180,15 @@ impl<'c, B: Side> Campaign<'c, B> {
             time: Duration::ZERO,
             budget,
             short,
+            drifts: 0,
+            aged: false,
             eves: Vec::new(),
             with_words,
             recipes: Vec::new(),
             flags,
             met: HashSet::new(),
             standing: Vec::new(),
+            age: 0,
             lapsed: false,
             probe,
             quiet: 0,
@@ -200,6 +212,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             return;
         }
         self.each_input();
+        self.each_at_once();
         let mut round = 0usize;
         let mut argue_at = self.budget / FIRST_ARGUMENT;
         while self.open() {
@@ -218,6 +231,8 @@ impl<'c, B: Side> Campaign<'c, B> {
                 3 => self.wait_long(),
                 4 => self.change_mode(),
                 5 if round % 384 == 5 => self.wait_days(),
+                5 if round % 384 == 29 => self.reach_age(),
+                5 if round % 384 == 53 => self.drift(),
                 5 => self.steady(),
                 _ => self.wander(),
             }
@@ -300,7 +315,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             return;
         }
         let (both, tape, standing) = (self.both.fork(), self.tape.clone(), self.standing.clone());
-        let entry = Entry { both, parent: self.from, tape, depth, used: 0, standing };
+        let entry = Entry { both, parent: self.from, tape, depth, used: 0, standing, age: self.age };
         self.from = self.corpus.len();
         self.corpus.push(entry);
         self.tape.clear();
@@ -316,7 +331,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         if self.lapsed {
             return;
         }
-        let dt = if program_run { 0 } else { dt.min(if self.short { SHORT_PACE } else { u32::MAX }) };
+        let dt = if program_run { 0 } else { dt.min(self.longest()) };
         for set in self.pending.drain(..) {
             let written = self.inputs.all.get(usize::from(set.0)).is_some_and(|input| input.written);
             if !(program_run && written) {
@@ -344,6 +359,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.goals.look(&self.both.a);
         self.scans += 1;
         self.time += time;
+        self.age += u64::from(dt);
         self.mode_changes += u64::from(program_run);
         self.quiet += 1;
         if let Some(progress) = self.progress {
@@ -377,6 +393,16 @@ impl<'c, B: Side> Campaign<'c, B> {
         if self.is_new() || fresh {
             self.keep();
         }
+    }
+
+    /// The longest time before the next scan, in microseconds: a timed interrupt comes no more than once in it.
+    fn longest(&self) -> u32 {
+        if !self.short {
+            return u32::MAX;
+        }
+        let Some((left, period)) = self.both.a.machine.timed_interrupt() else { return SHORT_PACE };
+        let below_two = (left + period).saturating_sub(Duration::from_millis(1));
+        u32::try_from(below_two.as_millis() * 1000).unwrap_or(u32::MAX).max(SHORT_PACE)
     }
 
     /// Adds a long scan to the time of timers that are timing but not executed.
@@ -419,6 +445,7 @@ impl<'c, B: Side> Campaign<'c, B> {
         entry.used += 1;
         self.both.copy_from(&entry.both);
         self.standing.clone_from(&entry.standing);
+        self.age = entry.age;
         self.lapsed = false;
         self.from = index;
         self.tape.clear();

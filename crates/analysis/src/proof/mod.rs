@@ -9,6 +9,7 @@
 //! A run that finds nothing proves nothing beyond what it covered, and says what that was. What is not
 //! mapped, not converted or never reached is listed and never counts as equal.
 
+mod ages;
 mod campaign;
 mod check;
 mod fates;
@@ -223,7 +224,7 @@ fn prove<B: Side>(
     let base = Both { a: both.a.fork(), b: both.b.fork() };
     let short = has_timed_interrupt(image);
     if short {
-        let why = "a timed interrupt runs in the original: scans were at most 10 ms apart";
+        let why = "a timed interrupt runs in the original: it came at most once between two scans";
         report.notes.push(why.to_owned());
     }
     let limits = (options.seed, options.scans, short);

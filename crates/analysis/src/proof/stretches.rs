@@ -4,26 +4,21 @@
 use std::time::Duration;
 
 use super::campaign::{Campaign, PACES, TIMING};
-use super::goals::{Goal, GoalKind};
+use super::goals::Goal;
 use super::play::Both;
 use super::side::{Kind, Side, Slc};
 use super::solve::Plan;
 
 /// Scans of a long wait, and the part of all scans it may take if that is more.
-const LONGEST_WAIT: u64 = 600;
-const PART_OF_ALL: u64 = 20;
+pub(super) const LONGEST_WAIT: u64 = 600;
+pub(super) const PART_OF_ALL: u64 = 20;
 /// Longest time before a scan in a long wait, in microseconds. A controller's watchdog ends far longer ones.
 const LONGEST_PACE: u64 = 2_000_000;
 /// Times before a scan that hold whole counts of a timer or nearly so, in milliseconds.
 const LEAPS: [u32; 18] =
     [9, 11, 20, 99, 100, 101, 300, 999, 1000, 1001, 1999, 2000, 2001, 2999, 3000, 5000, 10_000, 60_001];
-/// Milliseconds before something that comes with time at which a state is kept.
-const SLACKS: [i64; 8] = [0, 1, 2, 5, 40, 300, 2000, 20_000];
-/// Such states kept.
-const MOST_EVES: usize = 64;
-/// Time before a scan where weeks are to pass, in microseconds: no controller scans so slowly, but what it
-/// counts must add up the same.
-const DAY_PACE: u32 = 3_599_987_000;
+/// Changes of a bit before any time has passed.
+const EDGES: usize = 40;
 
 impl<B: Side> Campaign<'_, B> {
     fn some_dt(&mut self) -> u32 {
@@ -85,6 +80,31 @@ impl<B: Side> Campaign<'_, B> {
                     self.scan(false, dt);
                 }
             }
+            if !self.open() {
+                return;
+            }
+        }
+    }
+
+    /// Edges of every bit from outside before any time has passed: what was loaded still stands then.
+    pub(super) fn each_at_once(&mut self) {
+        let bits: Vec<usize> =
+            (0..).zip(&self.inputs.all).filter(|row| row.1.kind == Kind::Bit).map(|row| row.0).collect();
+        if (bits.len() * EDGES) as u64 > self.budget / PART_OF_ALL {
+            return;
+        }
+        for index in bits {
+            self.episodes += 1;
+            self.begin_at(0);
+            for _ in 0..EDGES {
+                let value = self.some_value(index);
+                self.pending.push((u16::try_from(index).unwrap_or(u16::MAX), value));
+                if !self.goes_on() {
+                    break;
+                }
+                self.scan(true, 0);
+            }
+            self.scans_of(2);
             if !self.open() {
                 return;
             }
@@ -188,7 +208,7 @@ impl<B: Side> Campaign<'_, B> {
         self.goals.all.iter().any(|goal| goal.location == wanted.location && goal.kind == wanted.kind && goal.reached)
     }
 
-    fn carry_out(&mut self, plan: &Plan) {
+    pub(super) fn carry_out(&mut self, plan: &Plan) {
         for (index, value) in &plan.sets {
             let input = self.inputs.all.get(*index).filter(|input| input.bounded);
             let inside = input.is_none_or(|input| {
@@ -217,7 +237,7 @@ impl<B: Side> Campaign<'_, B> {
         self.pass(plan.wait);
     }
 
-    fn scans_of(&mut self, count: u64) {
+    pub(super) fn scans_of(&mut self, count: u64) {
         for _ in 0..count {
             if !self.goes_on() {
                 return;
@@ -228,7 +248,7 @@ impl<B: Side> Campaign<'_, B> {
     }
 
     /// Lets milliseconds pass and a little more: most of it in few long scans, the end in short ones.
-    fn pass(&mut self, milliseconds: u64) {
+    pub(super) fn pass(&mut self, milliseconds: u64) {
         if milliseconds == 0 {
             return;
         }
@@ -262,32 +282,8 @@ impl<B: Side> Campaign<'_, B> {
         self.reach((preset, base));
     }
 
-    /// Around something that comes with time, such as a clock that starts anew after days: a timer is started shortly
-    /// before, and looked at to the millisecond behind it.
-    pub(super) fn at_eve(&mut self) {
-        let eve = self.random.pick(&self.eves).copied();
-        if !eve.is_some_and(|eve| self.begin_at(eve)) {
-            return self.aim();
-        }
-        self.pace = if self.random.chance(1, 2) { 1000 } else { self.pace };
-        let timers = |goal: &&Goal| goal.kind == GoalKind::Done && goal.impossible.is_none();
-        let all: Vec<Goal> = self.goals.all.iter().filter(timers).cloned().collect();
-        for _ in 0..1 + self.random.below(3) {
-            let Some(goal) = self.random.pick(&all) else { break };
-            let mut plan = self.solver.plan(goal, &self.both.a, &mut self.random);
-            plan.wait = 0;
-            self.carry_out(&plan);
-        }
-        let timing = |row: &&(u32, u32)| self.both.a.word(row.0 - 16) & TIMING != 0;
-        let running: Vec<(u32, u32)> = self.presets.iter().filter(timing).copied().collect();
-        match self.random.pick(&running).copied() {
-            Some(timer) if self.goes_on() => self.reach(timer),
-            _ => self.wander(),
-        }
-    }
-
     /// To the millisecond a timer is done or counts in, from the present state.
-    fn reach(&mut self, (preset, base): (u32, u32)) {
+    pub(super) fn reach(&mut self, (preset, base): (u32, u32)) {
         self.pace = 1000;
         self.scans_of(2);
         match self.random.below(8) {
@@ -379,49 +375,6 @@ impl<B: Side> Campaign<'_, B> {
         Some(after)
     }
 
-    /// Towards equal values in a comparison of the other program that come with time, whatever it is: a state
-    /// shortly before is kept, and what follows is looked at to the millisecond.
-    pub(super) fn reach_boundary(&mut self) {
-        self.looks = true;
-        self.pace = 10_000;
-        self.scans_of(1);
-        let before = self.seen.gaps().to_vec();
-        self.scans_of(1);
-        let closer = |(index, gap): (usize, &i64)| {
-            let came = before.get(index).map(|before| before - gap);
-            (came == Some(10) && *gap > 0).then_some((index, *gap))
-        };
-        let coming: Vec<(usize, i64)> = self.seen.gaps().iter().enumerate().filter_map(closer).collect();
-        let unseen: Vec<(usize, i64)> =
-            coming.iter().copied().filter(|(index, _)| !self.seen.was_equal(*index)).collect();
-        let chosen = self.random.pick(&unseen).copied();
-        let Some((_, gap)) = chosen.or_else(|| self.random.pick(&coming).copied()) else {
-            self.looks = false;
-            return self.wander();
-        };
-        let slack = self.random.pick(&SLACKS).copied().unwrap_or(0);
-        let mut left = u32::try_from(gap - slack).unwrap_or(0);
-        let most = LONGEST_WAIT.max(self.budget / PART_OF_ALL);
-        let mut scans = 0;
-        while left > 0 && scans < most && self.goes_on() {
-            let dt = left.min(DAY_PACE / 1000);
-            self.scan(false, dt * 1000);
-            left -= dt;
-            scans += 1;
-        }
-        self.looks = false;
-        if left == 0 && self.goes_on() && self.eves.len() < MOST_EVES {
-            self.eves.push(self.kept());
-            self.keep();
-        }
-        self.pace = 1000;
-        if self.random.chance(1, 2) {
-            self.change();
-        }
-        self.scans_of(4);
-        self.wander();
-    }
-
     /// Past presets: one of them, or all one after the other.
     pub(super) fn wait_long(&mut self) {
         let length = |both: &Both<B>, (preset, base): (u32, u32)| {
@@ -460,7 +413,7 @@ impl<B: Side> Campaign<'_, B> {
     }
 
     /// One input changes before the next scan.
-    fn change(&mut self) {
+    pub(super) fn change(&mut self) {
         if self.inputs.all.is_empty() {
             return;
         }
@@ -485,26 +438,5 @@ impl<B: Side> Campaign<'_, B> {
             let pace = self.pace;
             self.scan(false, pace);
         }
-    }
-
-    /// More time than any counter of milliseconds in 31 bits can hold: what runs for weeks must go on right.
-    pub(super) fn wait_days(&mut self) {
-        // With changes, or quietly: a change can stop it all.
-        let busy = self.random.chance(1, 2);
-        for _ in 0..900 {
-            if !self.goes_on() {
-                return;
-            }
-            if busy && self.random.chance(1, 4) {
-                self.change();
-            }
-            let dt = if self.random.chance(1, 5) { self.pace } else { DAY_PACE };
-            self.scan(false, dt);
-        }
-        if self.eves.len() < MOST_EVES && self.goes_on() {
-            self.eves.push(self.kept());
-            self.keep();
-        }
-        self.wander();
     }
 }
