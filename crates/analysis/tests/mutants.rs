@@ -47,6 +47,9 @@ fn effort() -> (usize, u64) {
     }
 }
 
+/// Scans of a run that is followed by a longer one.
+const LONG: u64 = 400_000;
+
 const HEADS: [&str; 7] = ["found", "unchanged", "helpers", "related", "argued", "refused", "unexplained"];
 
 /// Counts by [`HEADS`].
@@ -108,8 +111,8 @@ fn spread(all: &[Mutant], count: usize) -> impl Iterator<Item = &Mutant> {
 fn try_one(program: &Migrated, mutant: &Mutant, scans: u64, judge: &mut Judge<'_>) -> usize {
     let mut answer = Same::Open("not asked".to_owned());
     // A short run finds most of them; what cannot be found needs no long one.
-    for thorough in [false, true] {
-        match prove(program, &mutant.project, if thorough { scans } else { scans / 20 }).verdict() {
+    for (scans, thorough) in [(scans / 20, false), (scans, true)] {
+        match prove(program, &mutant.project, scans).verdict() {
             Verdict::Different => {
                 let argument = argued::argument(&program.name, mutant);
                 assert!(argument.is_none(), "the run shows what an argument excludes: {argument:?}");
@@ -128,6 +131,10 @@ fn try_one(program: &Migrated, mutant: &Mutant, scans: u64, judge: &mut Judge<'_
     }
     if argued::argument(&program.name, mutant).is_some() {
         return 4;
+    }
+    // Some show only behind a time that few runs take.
+    if scans >= LONG && prove(program, &mutant.project, 4 * scans).verdict() == Verdict::Different {
+        return 0;
     }
     let why = judge.why(&answer);
     println!("unexplained: {}: {:?} {} at {:?} -- {why}", program.name, mutant.kind, mutant.what, mutant.place);

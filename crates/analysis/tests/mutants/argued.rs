@@ -44,7 +44,7 @@ pub(crate) fn check(program: &str, mutants: &[Mutant], scope: &Scope) {
 }
 
 /// Arguments rest on the text of the converted program; read them beside it.
-const ARGUED: [Argued; 10] = [
+const ARGUED: [Argued; 17] = [
     Argued {
         program: "batch.SLC",
         what: "$Main rung 4: MATH D5 \"IF(T0.Acc < D6, 0, T0.Acc - D6)\" -> MATH D5 \"IF(T0.Acc < D6, 1, T0.Acc - D6)\"",
@@ -129,5 +129,66 @@ const ARGUED: [Argued; 10] = [
         steady: &["D4", "N108"],
         why: "D4 is left at 1 where the rung has no power, which also resets N108:15. The next execution with power finds N108:15 off and makes D4 0 before it \
               is read; it is read nowhere else.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT.RSS",
+        what: "$Main rung 4: MATH D12 \"IF(T0.Acc < D13, 0, T0.Acc - D13)\" -> MATH D12 \"IF(T0.Acc < D14, 0, T0.Acc - D13)\"",
+        instruction: 1,
+        steady: &["T0", "D0", "D12", "D13", "D14"],
+        why: "Nothing writes D14: it is 0, and T0.Acc is never below. T0.Acc is below D13 only in a scan that enters run; there the clock D0 falls by D13 instead of standing still. \
+              D0 is read by the timers alone, as D0 less what it was at their execution before, modulo 1,000,000,000; entering run sets C512 to C516, so that each \
+              of them takes D0 anew at its next execution and counts no time there. From there on both are shifted alike: no difference changes.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT.RSS",
+        what: "$Main rung 5: STRGE T0.Acc 1000000000 -> STRGE T0.Acc 999999999",
+        instruction: 0,
+        steady: &["T0", "D0", "D12", "D13"],
+        why: "Only where T0.Acc is 999,999,999 exactly: T0.Acc and D13 go on from -1, the difference of which is the same, and both programs hold the same again as soon as \
+              time passes. With run left and entered in between, T0.Acc is 0 and D12 1 instead of 0: the clock D0 gains a millisecond, which nothing shows, as for \
+              rung 4.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "$Main rung 4: MATH D12 \"IF(T0.Acc < D13, 0, T0.Acc - D13)\" -> MATH D12 \"IF(T0.Acc < D14, 0, T0.Acc - D13)\"",
+        instruction: 1,
+        steady: &["T0", "D0", "D12", "D13", "D14"],
+        why: "Nothing writes D14: it is 0, and T0.Acc is never below. T0.Acc is below D13 only in a scan that enters run; there the clock D0 falls by D13 instead of standing still. \
+              D0 is read by the timers alone, as D0 less what it was at their execution before, modulo 1,000,000,000; entering run sets C512 to C516, so that each \
+              of them takes D0 anew at its next execution and counts no time there. From there on both are shifted alike: no difference changes.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "$Main rung 5: STRGE T0.Acc 1000000000 -> STRGE T0.Acc 999999999",
+        instruction: 0,
+        steady: &["T0", "D0", "D12", "D13"],
+        why: "Only where T0.Acc is 999,999,999 exactly: T0.Acc and D13 go on from -1, the difference of which is the same, and both programs hold the same again as soon as \
+              time passes. With run left and entered in between, T0.Acc is 0 and D12 1 instead of 0: the clock D0 gains a millisecond, which nothing shows, as for \
+              rung 4.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT.RSS",
+        what: "SLC3_FLASHER rung 1: MOVE 0 D2 -> MOVE 0 D3",
+        instruction: 6,
+        steady: &["C515", "N117", "D2", "D3", "C512", "N105"],
+        why: "With C515 on N117:15 is reset next, and D2 is read only with N117:15 on; the next timer computes it anew. D3 belongs to T4:0, which is executed before in the \
+              same scan, or not at all: C512 was set with C515, so that T4:0 begins with D3 at 0 at its next execution in either case, and without power D3 is 0 too.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT.RSS",
+        what: "SLC3_FLASHER rung 1: OR ST1 -> ORN ST1",
+        instruction: 50,
+        steady: &["C515", "N117", "D9", "N119"],
+        why: "C515 stays on while the rung is false instead of going off at its first execution. That first one has reset N117:15 and made N119 and D9 0. With C515 still on, \
+              the first execution with power makes D2 0, which is not read with N117:15 off, resets N117:15, which is off, and resets C515.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "SLC4_TIMER rung 1: MATH D3 \"IF(N107 < N106, D3 % 1000, 0)\" -> MATH D3 \"IF(N107 < N106, D3 % 1000, 1)\"",
+        instruction: 23,
+        steady: &["N105", "N106", "N107", "D3", "C512"],
+        why: "D3 is left at 1 where N107 has reached N106; the same execution then sets N105:13. D3 is read only with N105:15 on and N105:13 off. N105:13 goes off with N105:15 \
+              on in no execution; where N105:15 goes off, D3 is made 0 before it is read: without power at once, at the first execution after entering run by the line for \
+              N105:15 off.",
     },
 ];

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::time::Duration;
 
 use analysis::proof::{Kind, Scope};
-use domore::address::Operand;
+use domore::address::{Constant, Number, Operand};
 use domore::engine::{Handle, Machine, Program};
-use domore::math::Expression;
+use domore::math::{Binary, Expression};
 use domore::memory::{Data, Kind as MemoryKind, Map, Num, Place, Resolved};
 use domore::{Project, Rung};
 
@@ -39,6 +39,8 @@ pub(crate) type Clause = Vec<Atom>;
 /// States a random run is looked at in.
 const SAMPLES: usize = 1500;
 const MOST_CLAUSES: usize = 6000;
+/// Elements of a row that are looked at.
+const LONGEST_ROW: u32 = 32;
 
 impl Part {
     fn read(self, data: &Data) -> i64 {
@@ -179,12 +181,20 @@ struct Named {
     bits: BTreeSet<u32>,
     words: BTreeSet<Part>,
     numbers: BTreeSet<i64>,
+    /// A bit and a word that one index chooses.
+    pairs: BTreeSet<(u32, Part)>,
 }
 
 impl Named {
     fn of(map: &Map, rung: &Rung) -> Named {
         let (mut bits, mut words, mut numbers) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::from([0]));
+        let mut rows = BTreeMap::new();
         let mut take = |resolved: Resolved| match resolved {
+            Resolved::Indexed { block, expression } => {
+                if let Some((index, first)) = row_of(map, &expression) {
+                    rows.entry(index).or_insert_with(BTreeSet::new).insert((block, first));
+                }
+            }
             Resolved::Place(place) => match place.kind {
                 MemoryKind::Bit => drop(bits.insert(place.bit)),
                 MemoryKind::I16 => drop(words.insert(Part::Word(place.bit, 16))),
@@ -214,8 +224,39 @@ impl Named {
                 Err(_) => {}
             }
         }
-        Named { bits, words, numbers }
+        let pairs = rows.values().flat_map(|starts| pairs_of(map, starts)).collect();
+        Named { bits, words, numbers, pairs }
     }
+}
+
+/// The parts of an index that is a sum with a constant.
+fn row_of(map: &Map, expression: &str) -> Option<(String, u32)> {
+    let radix = |block: &str| map.radix(block);
+    match Expression::parse_with(expression, &radix).ok()? {
+        Expression::Binary(Binary::Add, first, index) => match *first {
+            Expression::Operand(Operand::Constant(Constant { value: Number::Integer(first), .. })) => {
+                Some((format!("{index:?}"), first.try_into().ok()?))
+            }
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Elements of rows that belong together, as far as they are looked at.
+fn pairs_of(map: &Map, starts: &BTreeSet<(usize, u32)>) -> Vec<(u32, Part)> {
+    let element = |(block, first): (usize, u32), index: u32| map.blocks().get(block)?.place(first + index);
+    let mut pairs = Vec::new();
+    for (one, other) in starts.iter().flat_map(|one| starts.iter().map(move |other| (*one, *other))) {
+        for (bit, word) in (0..LONGEST_ROW).filter_map(|index| element(one, index).zip(element(other, index))) {
+            match (bit.kind, word.kind) {
+                (MemoryKind::Bit, MemoryKind::I16) => pairs.push((bit.bit, Part::Word(word.bit, 16))),
+                (MemoryKind::Bit, MemoryKind::I32) => pairs.push((bit.bit, Part::Word(word.bit, 32))),
+                _ => {}
+            }
+        }
+    }
+    pairs
 }
 
 /// All bits of words a rung names.
@@ -226,12 +267,13 @@ pub(crate) fn words_of(map: &Map, rung: &Rung) -> Vec<u32> {
 /// All bits a rung names, alone or in words.
 pub(crate) fn bits_of(map: &Map, rung: &Rung) -> Vec<u32> {
     let named = Named::of(map, rung);
-    named.bits.into_iter().chain(named.words.into_iter().flat_map(Part::bits)).collect()
+    let chosen = named.pairs.into_iter().flat_map(|(bit, word)| word.bits().chain([bit]));
+    named.bits.into_iter().chain(named.words.into_iter().flat_map(Part::bits)).chain(chosen).collect()
 }
 
 /// Clauses over the bits and words of one rung that all samples show.
 fn propose(map: &Map, rung: &Rung, varying: &BTreeSet<u32>, samples: &[Data], clauses: &mut BTreeSet<Clause>) {
-    let Named { mut bits, words, mut numbers } = Named::of(map, rung);
+    let Named { mut bits, words, mut numbers, pairs } = Named::of(map, rung);
     // A mutant of a number lives one beside it.
     let near: Vec<i64> = numbers.iter().flat_map(|number| [number - 1, number + 1]).collect();
     numbers.extend(near.into_iter().filter(|number| number.abs() > 1000 || *number == -1));
@@ -244,6 +286,17 @@ fn propose(map: &Map, rung: &Rung, varying: &BTreeSet<u32>, samples: &[Data], cl
                 atoms.push(atom);
             }
             atoms.extend([Atom::Less(b, *a), Atom::LessOrEqual(b, *a)]);
+        }
+    }
+    for (bit, word) in pairs.iter().filter(|(bit, _)| varying.contains(bit)) {
+        let ends = numbers.iter().map(|number| Part::Fixed(*number));
+        for atom in ends.flat_map(|end| [Atom::Less(*word, end), Atom::Less(end, *word)]) {
+            for flag in [true, false].map(|on| Atom::Bit(*bit, on)) {
+                // Even where no run came to this element.
+                if samples.iter().all(|data| flag.holds(data) || atom.holds(data)) {
+                    clauses.insert(vec![flag, atom]);
+                }
+            }
         }
     }
     let shows = |atom: &Atom| samples.iter().map(|data| atom.holds(data)).collect::<Vec<bool>>();
