@@ -11,6 +11,16 @@ pub struct MajorFault {
     pub file: u16,
     /// Its rung.
     pub rung: u16,
+    /// Of a minor error at the end of the scan: program file and rung of the instruction that set the first bit of
+    /// S:5 that stops. `None` for all other faults, and where the program stored the bit itself.
+    pub cause: Option<(u16, u16)>,
+}
+
+impl MajorFault {
+    /// Program file and rung to look at: of the cause where it is known.
+    pub fn place(&self) -> (u16, u16) {
+        self.cause.unwrap_or((self.file, self.rung))
+    }
 }
 
 impl fmt::Display for MajorFault {
@@ -20,7 +30,11 @@ impl fmt::Display for MajorFault {
         if let Some(text) = meaning(self.code) {
             write!(f, " ({text})")?;
         }
-        write!(f, " at file {} rung {}", self.file, self.rung)
+        write!(f, " at file {} rung {}", self.file, self.rung)?;
+        match self.cause {
+            Some((file, rung)) => write!(f, ", set by file {file} rung {rung}"),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Saved states: a stable byte form of [`State`].
 //!
-//! `RUNGSIM2`, the identity of the program, then every field in a fixed order, numbers little-endian.
+//! `RUNGSIM3`, the identity of the program, then every field in a fixed order, numbers little-endian.
 
 use crate::shared::Reader;
 pub use crate::shared::RestoreError;
@@ -14,7 +14,7 @@ use crate::machine::Mode;
 use crate::op::Compiled;
 use crate::state::{MessageSlot, PidSlot, State, TimedInterrupt, TimerSlot};
 
-const MAGIC: &[u8; 8] = b"RUNGSIM2";
+const MAGIC: &[u8; 8] = b"RUNGSIM3";
 
 const MODES: [Mode; 5] = [Mode::Program, Mode::Run, Mode::Test, Mode::Suspend, Mode::Fault];
 
@@ -82,8 +82,13 @@ pub(crate) fn save(program: &Compiled, state: &State) -> Vec<u8> {
         }
     }
     out.push(MODES.iter().position(|mode| *mode == state.mode).unwrap_or(0) as u8);
-    let fault = state.fault.map_or([0; 4], |fault| [1, fault.code, fault.file, fault.rung]);
+    let fault = state.fault.map_or([0; 7], |fault| {
+        let (file, rung) = fault.cause.unwrap_or_default();
+        [1, fault.code, fault.file, fault.rung, fault.cause.is_some().into(), file, rung]
+    });
     fault.into_iter().for_each(|word: u16| out.extend_from_slice(&word.to_le_bytes()));
+    out.push(state.minor_by.is_some().into());
+    out.extend_from_slice(&state.minor_by.unwrap_or(0).to_le_bytes());
     out
 }
 
@@ -153,7 +158,11 @@ pub(crate) fn restore(program: &Compiled, bytes: &[u8]) -> Result<State, Restore
     let mode = reader.take::<1>()?[0];
     state.mode = *MODES.get(usize::from(mode)).ok_or(RestoreError::NotAState)?;
     let (present, code, file, rung) = (reader.word()?, reader.word()?, reader.word()?, reader.word()?);
-    state.fault = (present != 0).then_some(MajorFault { code, file, rung });
+    let (known, cause) = (reader.word()?, (reader.word()?, reader.word()?));
+    let cause = (known != 0).then_some(cause);
+    state.fault = (present != 0).then_some(MajorFault { code, file, rung, cause });
+    let (known, by) = (reader.flag()?, reader.take().map(u32::from_le_bytes)?);
+    state.minor_by = known.then_some(by);
     reader.end()?;
     Ok(state)
 }

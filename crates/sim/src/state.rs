@@ -69,6 +69,10 @@ pub(crate) struct State {
     pub(crate) limit: u64,
     pub(crate) mode: Mode,
     pub(crate) fault: Option<MajorFault>,
+    /// The box that is executing, by its operation.
+    pub(crate) acting: u32,
+    /// The operation that set the first bit of S:5 that stops the processor at the end of the scan.
+    pub(crate) minor_by: Option<u32>,
     /// Part of a count of S:4, and of a second of the clock, in nanoseconds.
     pub(crate) clock_part: u64,
     pub(crate) second_part: u64,
@@ -111,6 +115,8 @@ impl State {
             limit: 0,
             mode: Mode::Program,
             fault: None,
+            acting: 0,
+            minor_by: None,
             clock_part: 0,
             second_part: 0,
             since_scan: 0,
@@ -144,6 +150,8 @@ impl State {
             limit,
             mode,
             fault,
+            acting,
+            minor_by,
             clock_part,
             second_part,
             since_scan,
@@ -171,6 +179,8 @@ impl State {
         self.limit = *limit;
         self.mode = *mode;
         self.fault = *fault;
+        self.acting = *acting;
+        self.minor_by = *minor_by;
         self.clock_part = *clock_part;
         self.second_part = *second_part;
         self.since_scan = *since_scan;

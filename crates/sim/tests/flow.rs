@@ -140,6 +140,33 @@ fn minor_errors_count_at_the_end() {
 }
 
 #[test]
+fn a_minor_error_names_the_rung_that_set_it() {
+    let overflow = [("N7:0", 32767), ("S:24", 0)];
+    let fault = |ladder: &str| {
+        let mut bench = Bench::new(Slc503, ladder, &overflow);
+        bench.scans(1);
+        bench.machine.fault().map(|fault| (fault.code, fault.place(), fault.cause.is_some()))
+    };
+    assert_eq!(fault("XIC B3:0/0 OTE B3:0/1\nADD N7:0 1 N7:1\nADD N7:0 2 N7:2"), Some((0x20, (2, 1), true)));
+    assert_eq!(fault("BSL #B3:1 R6:0 N7:0/0 16\nFFL N7:0 #N7:2 R6:1 0 5"), Some((0x20, (2, 1), true)), "S:5/2");
+    // Cleared in between: the second one stops.
+    assert_eq!(fault("ADD N7:0 1 N7:1\nOTU S:5/0\nADD N7:0 2 N7:2"), Some((0x20, (2, 2), true)));
+    // The program set it, or the fault is another one: the end of the program, and the rung that failed.
+    assert_eq!(fault("OTE B3:0/1\nOTL S:5/0"), Some((0x20, (2, 1), false)));
+    assert_eq!(fault("OTE B3:0/1\nADD N7:0 1 N7:1\nRET"), Some((0x38, (2, 2), false)));
+
+    let mut bench = Bench::new(Slc503, "ADD N7:0 1 N7:1\nOTE B3:0/1", &overflow);
+    bench.scans(1);
+    let said = "major fault 0020 (minor error bit set at the end of the scan) at file 2 rung 1, set by file 2 rung 0";
+    assert_eq!(bench.machine.fault().map(|fault| fault.to_string()).as_deref(), Some(said));
+    let bytes = bench.machine.save();
+    let fault = bench.machine.fault();
+    bench.scans(1);
+    bench.machine.restore(&bytes).expect("its own state");
+    assert_eq!(bench.machine.fault(), fault);
+}
+
+#[test]
 fn the_fault_routine_clears_a_timer_fault() {
     let program = [(2, "XIC B3:0/0 TON T4:4 1.0 10 -5\nADD N7:0 1 N7:0"), (3, "CLR T4:4.ACC\nOTU S:1/13")];
     let mut bench = files(Slc503, &program, &[("S:29", 3), ("B3:0/0", 1), ("T4:4.ACC", -5)]);

@@ -299,9 +299,10 @@ impl Pairs {
     /// left to a person anyway.
     pub(crate) fn is_stated(&self, fault: sim::MajorFault) -> bool {
         let code = format!("fault {:04X}", fault.code);
-        let here = |row: &&(u16, u32, Vec<String>)| (row.0, row.1) == (fault.file, u32::from(fault.rung));
+        let (file, rung) = fault.place();
+        let here = |row: &&(u16, u32, Vec<String>)| (row.0, row.1) == (file, u32::from(rung));
         let mut conditions = self.conditions.iter().filter(here).flat_map(|row| &row.2);
-        self.persons.contains(&(fault.file, u32::from(fault.rung)))
+        self.persons.contains(&(file, u32::from(rung)))
             || conditions.any(|condition| condition.contains(&code) || condition.starts_with("INDIRECT"))
     }
 

@@ -58,7 +58,7 @@ pub trait Subject: Send + Sync {
     fn enter_test(&mut self) -> Result<(), String>;
     /// Power is lost and comes back.
     fn power_cycle(&mut self);
-    /// Where the fault stands that has stopped it: routine and rung.
+    /// Where the fault stands that has stopped it: routine and rung, of a minor error those that set it.
     fn fault_site(&self) -> Option<(u16, u16)>;
     /// Installs or removes a force; answers the one name that its point has, however the address spells it.
     ///
@@ -205,7 +205,7 @@ impl Subject for Slc {
     }
 
     fn fault_site(&self) -> Option<(u16, u16)> {
-        self.side.machine.fault().map(|fault| (fault.file, fault.rung))
+        self.side.machine.fault().map(|fault| fault.place())
     }
 
     fn force(&mut self, address: &str, state: Option<bool>) -> Result<String, String> {

@@ -23,7 +23,7 @@ impl Core<'_> {
     fn control_error(&mut self, error: bool) {
         if error {
             let minor = self.status(status::MINOR);
-            self.set_status(status::MINOR, minor | status::CONTROL_ERROR);
+            self.set_minor(minor, minor | status::CONTROL_ERROR);
         }
     }
 

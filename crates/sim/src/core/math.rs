@@ -46,7 +46,15 @@ impl Core<'_> {
         let word = self.status(status::FLAGS);
         self.set_status(status::FLAGS, flags.store(word));
         let minor = self.status(status::MINOR);
-        self.set_status(status::MINOR, flags.trap(minor, self.p.rules));
+        self.set_minor(minor, flags.trap(minor, self.p.rules));
+    }
+
+    /// Stores S:5 as a box leaves it.
+    pub(super) fn set_minor(&mut self, before: u16, after: u16) {
+        if before & status::MINOR_FATAL == 0 && after & status::MINOR_FATAL != 0 {
+            self.s.minor_by = Some(self.s.acting);
+        }
+        self.set_status(status::MINOR, after);
     }
 
     /// A destination decided at run time as a fixed one.

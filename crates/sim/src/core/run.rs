@@ -206,23 +206,27 @@ impl Core<'_> {
                     }
                 }
                 Op::Do(block) => {
+                    self.s.acting = at as u32;
                     if flow.power
                         && let Err(code) = self.act(block, true, context)
                     {
                         failed = Some(code);
                     }
                 }
-                Op::Always(block) => match self.one_shot_block(block, flow.power) {
-                    Some(result) => match result {
-                        Ok(passed) => flow.power = passed,
-                        Err(code) => failed = Some(code),
-                    },
-                    None => {
-                        if let Err(code) = self.act(block, flow.power, context) {
-                            failed = Some(code);
+                Op::Always(block) => {
+                    self.s.acting = at as u32;
+                    match self.one_shot_block(block, flow.power) {
+                        Some(result) => match result {
+                            Ok(passed) => flow.power = passed,
+                            Err(code) => failed = Some(code),
+                        },
+                        None => {
+                            if let Err(code) = self.act(block, flow.power, context) {
+                                failed = Some(code);
+                            }
                         }
                     }
-                },
+                }
                 Op::Mcr => zone = if zone { flow.power } else { true },
                 Op::Jump(target) => {
                     if flow.power {
@@ -376,7 +380,9 @@ impl Core<'_> {
         let (file, rung) = site.map_or((0, 0), |site| (site.file, site.rung));
         self.set_status(status::FAULT_CODE, code);
         self.set_status_bit(status::MAJOR_ERROR, true);
-        self.s.fault = Some(MajorFault { code, file, rung });
+        let cause = self.s.minor_by.take().filter(|_| code == code::MINOR_ERROR);
+        let cause = cause.and_then(|by| self.p.sites.get(by as usize)).map(|site| (site.file, site.rung));
+        self.s.fault = Some(MajorFault { code, file, rung, cause });
         if context == Context::FaultRoutine {
             let minor = self.status(status::MINOR);
             self.set_status(status::MINOR, minor | status::FAULT_IN_ROUTINE);
@@ -391,7 +397,7 @@ impl Core<'_> {
         }
         let Some(entry) = self.p.entry(routine).filter(|_| (3..=255).contains(&routine)) else {
             self.set_status(status::FAULT_CODE, code::FAULT_ROUTINE);
-            self.s.fault = Some(MajorFault { code: code::FAULT_ROUTINE, file, rung });
+            self.s.fault = Some(MajorFault { code: code::FAULT_ROUTINE, file, rung, cause: None });
             return false;
         };
         // The routine has a budget of its own: after a watchdog fault none is left.

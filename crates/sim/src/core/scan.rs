@@ -48,7 +48,7 @@ impl Core<'_> {
     pub(crate) fn halt(&mut self, code: u16, site: OpSite) {
         self.set_status(status::FAULT_CODE, code);
         self.set_status_bit(status::MAJOR_ERROR, true);
-        self.s.fault = Some(MajorFault { code, file: site.file, rung: site.rung });
+        self.s.fault = Some(MajorFault { code, file: site.file, rung: site.rung, cause: None });
         self.stop(Mode::Fault);
     }
 
@@ -106,6 +106,9 @@ impl Core<'_> {
         }
         let elapsed = std::mem::take(&mut self.s.since_scan);
         self.refill();
+        if self.status(status::MINOR) & status::MINOR_FATAL == 0 {
+            self.s.minor_by = None;
+        }
         self.scan_times(elapsed);
         self.read_inputs();
         match self.p.traits.lineage {
