@@ -8,7 +8,7 @@ use ladder::{Image, Instruction, Rung};
 use super::RungFate;
 
 /// Reads the comments a migration leaves above each rung (`SLC 2:14  XIC ...`, `condition: ...`,
-/// `person: ...`). `None`: no rung says where it comes from.
+/// `person: ...`, the last two on as many lines as they take). `None`: no rung says where it comes from.
 pub fn fates(project: &domore::Project) -> Option<Vec<RungFate>> {
     let rungs = project.code_blocks().flat_map(|block| &block.rungs);
     let fates: Vec<RungFate> = rungs.filter_map(fate).collect();
@@ -42,17 +42,44 @@ pub fn origins(project: &domore::Project) -> Vec<Origin> {
     all
 }
 
+/// What the lines of a comment speak of.
+enum Open {
+    Nothing,
+    Person,
+    Condition,
+}
+
+/// How a line begins that says where the rungs of a subroutine stand.
+const FOLLOWS: &str = "the rungs of file ";
+
 fn fate(rung: &domore::Rung) -> Option<RungFate> {
     let lines = rung.comment.iter().flat_map(|comment| &comment.lines);
-    let (mut place, mut person, mut conditions) = (None, None, Vec::new());
+    let (mut place, mut person, mut conditions) = (None, None, Vec::<String>::new());
+    // What a line that is no mark goes on with: long reasons take several lines.
+    let mut open = Open::Nothing;
     for line in lines {
         if let Some(reason) = line.strip_prefix("person: ") {
             person = Some(reason.to_owned());
+            open = Open::Person;
         } else if let Some(condition) = line.strip_prefix("condition: ") {
             conditions.push(condition.to_owned());
+            open = Open::Condition;
         } else if let Some(found) = origin(line) {
             // The mark is the last line of a comment: what a person wrote above it does not count.
             place = Some(found);
+            open = Open::Nothing;
+        } else if line.starts_with(FOLLOWS) {
+            open = Open::Nothing;
+        } else {
+            let text = match open {
+                Open::Nothing => None,
+                Open::Person => person.as_mut(),
+                Open::Condition => conditions.last_mut(),
+            };
+            if let Some(text) = text {
+                text.push(' ');
+                text.push_str(line);
+            }
         }
     }
     place.map(|(file, rung)| RungFate { file, rung, person, conditions })
@@ -129,13 +156,14 @@ mod tests {
 
     #[test]
     fn marks_are_read_and_other_comments_are_not() {
-        let text = "$PRGRM $Main\n\n#BEGIN COMMENT\n\"Pump\"\n\"condition: X: y\"\n\"SLC 2:3  XIC B3:0/0\"\n#END\nSTR C0\nOUT C1\n\n\
+        let text = "$PRGRM $Main\n\n#BEGIN COMMENT\n\"Pump\"\n\"condition: X: y\"\n\"and z\"\n\"the rungs of file 3 follow here\"\n\"SLC 2:3  XIC B3:0/0\"\n#END\nSTR C0\nOUT C1\n\n\
                     #BEGIN COMMENT\n\"person: MSG: no\"\n\"SLC 2:4  MSG\"\n#END\nNOP\n\n#BEGIN COMMENT\n\"own\"\n#END\nNOP\n\n\
                     $PGMEND $Main\n";
         let project = domore::text::read(text).expect("reads").project;
         let found = fates(&project).expect("marks");
         let place = |fate: &RungFate| (fate.file, fate.rung, fate.person.is_some(), fate.conditions.len());
         assert_eq!(found.iter().map(place).collect::<Vec<_>>(), [(2, 3, false, 1), (2, 4, true, 0)]);
+        assert_eq!(found[0].conditions, ["X: y and z"]);
         let plain = domore::text::read("$PRGRM $Main\n\nSTR C0\nOUT C1\n\n$PGMEND $Main\n").expect("reads").project;
         assert_eq!(fates(&plain), None);
     }
