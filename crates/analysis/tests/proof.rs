@@ -3,7 +3,9 @@
 mod migrated;
 mod rungs;
 
-use analysis::proof::{Difference, Kind, Mapping, Named, Options, Report, RungFate, Verdict, prove_domore, prove_slc};
+use analysis::proof::{
+    Difference, Kind, Mapping, Named, Options, Report, RungFate, Verdict, fates, prove_domore, prove_slc,
+};
 use ladder::Image;
 use sim::scenario::{Loader, Scenario, Subject};
 
@@ -152,6 +154,45 @@ fn converted_programs_are_compared_by_their_map() {
     row.other = "C512".to_owned();
     assert_eq!(prove_domore(&image, &project, &wrong, None, &options(20_000)).verdict(), Verdict::Different);
     assert_eq!(prove_domore(&image, &project, &[], None, &options(2_000)).verdict(), Verdict::NotComparable);
+}
+
+#[test]
+fn an_input_with_a_coil_is_read_from_its_terminal_when_run_is_entered() {
+    let image = program(&["XIC I:0.0/0 OTE O:0.0/0", "XIC I:0.0/1 OTE I:0.0/0"]);
+    let (project, map) = migrated(&image);
+    let report = prove_domore(&image, &project, &map, fates(&project).as_deref(), &options(20_000));
+    assert_eq!(report.verdict(), Verdict::NoDifference, "{report}");
+}
+
+#[test]
+fn a_stated_condition_excuses_only_the_stops_of_its_rung() {
+    let power =
+        "XIC I:0.0/0 BST MUL F8:0 F8:0 F8:1 NXB MUL F8:1 F8:1 F8:1 NXB MUL F8:1 F8:1 F8:1 NXB MUL F8:1 F8:1 F8:1 BND";
+    let mut image = program(&[power, "XIC I:0.0/1 ADD N7:0 N7:1 N7:2"]);
+    image.data_files.push(ladder::DataFile::new(ladder::FileType::F, 8, 2));
+    if let Some(words) = image.data_files.iter_mut().find(|file| file.number == 7) {
+        *words = ladder::DataFile::new(ladder::FileType::N, 7, 3);
+    }
+    let (project, map) = migrated(&image);
+    let marks = fates(&project).expect("marks");
+    assert!(marks.iter().any(|mark| mark.conditions.iter().any(|why| why.contains("fault 0020"))), "{marks:?}");
+    let report = prove_domore(&image, &project, &map, Some(&marks), &options(20_000));
+    assert_eq!(report.verdict(), Verdict::NoDifference, "{report}");
+    assert!(report.outside > 0, "no float overflowed: {report}");
+
+    // The sum overflows and nothing is done about it.
+    let mut silent = project.clone();
+    let code = silent.parts.iter_mut().find_map(|part| match part {
+        domore::Part::Code(code) if code.name == "$Main" => Some(code),
+        _ => None,
+    });
+    let rungs = &mut code.expect("a main program").rungs;
+    let sets =
+        |it: &domore::Instruction| it.is("SET") && it.operand(0).ends_with(":0") && it.operand(0).starts_with('N');
+    let rung = rungs.iter_mut().find(|rung| rung.instructions.iter().any(sets)).expect("a trap");
+    rung.instructions.retain(|it| !sets(it));
+    let report = prove_domore(&image, &silent, &map, Some(&marks), &options(20_000));
+    assert!(matches!(report.found, Some((Difference::OriginalStopped(_, Some(0x20)), _))), "{report}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Contacts, coils and one-shots.
 
-use ladder::{Instruction, Operand};
+use ladder::{FileType, Instruction, Operand};
 
 use super::context::{Context, Converted};
 use super::emit::{Contact, Emitter, Relation};
@@ -43,17 +43,22 @@ fn xio(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) ->
     Ok(())
 }
 
-/// OTE: `OUT`. Entering RUN clears the bit on the original too, before the first rung.
+/// OTE: `OUT`. Entering RUN clears the bit on the original too, before the first rung; an input is read from its
+/// terminal in between.
 fn ote(context: &mut Context<'_>, e: &mut Emitter, instruction: &Instruction) -> Converted {
-    match context.bit_target(operand(instruction, 0)?)? {
+    let coil = operand(instruction, 0)?;
+    let is_input = coil.address().is_some_and(|address| address.file_type == FileType::I);
+    match context.bit_target(coil)? {
         Bit::Plain(bit) => {
             e.out(&bit);
-            context.needs.clear.insert(bit);
+            if !is_input {
+                context.needs.clear.insert(bit);
+            }
         }
         bit => {
             e.when(|e| bit.write(e, true));
             e.unless(|e| bit.write(e, false));
-            if !context.needs.clear_found.contains(&bit) {
+            if !is_input && !context.needs.clear_found.contains(&bit) {
                 context.needs.clear_found.push(bit);
             }
         }
