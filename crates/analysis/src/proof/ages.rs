@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::campaign::{Campaign, TIMING};
+use super::campaign::{Campaign, Mark, TIMING};
 use super::goals::{Goal, GoalKind};
 use super::side::Side;
 use super::stretches::{LONGEST_WAIT, PART_OF_ALL};
@@ -16,6 +16,10 @@ const MOST_EVES: usize = 64;
 const DAY_PACE: u32 = 3_599_987_000;
 /// Scans of a drift: half the numbers of 32 bits in steps of half those of 16, and some.
 const DRIFT: u64 = 66_000;
+/// Ways to its end that are tried.
+const WAYS_TO_END: usize = 100;
+/// Scans between two states of a drift that are gone back to.
+const MARK_EVERY: u64 = 1000;
 /// Times before them in milliseconds: greatest and least numbers of 16 bits, in tenths and whole ones.
 const DRIFT_PACES: [u32; 4] = [3276, 3277, 32_767, 32_768];
 /// After so many microseconds the clock that converted timers count by starts anew.
@@ -35,11 +39,83 @@ impl<B: Side> Campaign<'_, B> {
             return self.wander();
         }
         self.drifts += 1;
-        self.pace = self.random.pick(&DRIFT_PACES).copied().unwrap_or(10) * 1000;
+        let pace = self.random.pick(&DRIFT_PACES).copied().unwrap_or(10) * 1000;
         for _ in 0..1 + self.random.below(3) {
             self.change();
         }
-        self.scans_of(DRIFT);
+        let mut marks: Vec<Mark<B>> = Vec::new();
+        for scan in 0..DRIFT {
+            if scan % MARK_EVERY == 0 {
+                marks.truncate(1);
+                marks.insert(0, self.mark());
+            }
+            if !self.goes_on() {
+                break;
+            }
+            self.scan(false, pace);
+        }
+        if self.both.a.stopped().is_some()
+            && let Some(mark) = marks.last()
+        {
+            self.vary_end(mark, pace);
+        }
+    }
+
+    /// A drift ended in a fault: its last scans are made again in many ways, so that what runs over does so at the
+    /// same number.
+    fn vary_end(&mut self, mark: &Mark<B>, pace: u32) {
+        self.return_to(mark);
+        let mut scans = 0;
+        while self.goes_on() && scans < 2 * MARK_EVERY {
+            self.scan(false, pace);
+            scans += 1;
+        }
+        self.return_to(mark);
+        for _ in 0..scans.saturating_sub(6) {
+            self.scan(false, pace);
+        }
+        let near = self.mark();
+        let (pace, longest) = (pace / 1000, 2 * pace / 1000);
+        for _ in 0..WAYS_TO_END {
+            self.return_to(&near);
+            for _ in 0..self.random.below(12) {
+                let dt = 1 + self.random.below(longest as usize) as u32;
+                self.scan(false, dt * 1000);
+            }
+            for _ in 0..12 {
+                if self.goes_on() && !self.would_stop(pace) {
+                    self.scan(false, pace * 1000);
+                }
+            }
+            if !self.goes_on() || !self.would_stop(pace) {
+                continue;
+            }
+            // The time at which it just does not stop, if a longer or shorter one brings that about.
+            for other in [1, longest - 1] {
+                let before = self.mark();
+                let (mut stops, mut goes_on) = (pace, other);
+                while stops.abs_diff(goes_on) > 1 && !self.would_stop(goes_on) {
+                    let middle = stops.midpoint(goes_on);
+                    if self.would_stop(middle) { stops = middle } else { goes_on = middle }
+                }
+                for dt in [stops, goes_on] {
+                    self.return_to(&before);
+                    self.scan(false, dt * 1000);
+                }
+                self.scans_of(1);
+                if !self.open() {
+                    return;
+                }
+                self.return_to(&before);
+            }
+        }
+    }
+
+    /// Whether the original would stop in a scan behind so many milliseconds.
+    fn would_stop(&mut self, dt: u32) -> bool {
+        self.probe.copy_from(&self.both.a);
+        self.probe.scan(Duration::from_millis(dt.into()));
+        self.probe.stopped().is_some()
     }
 
     /// More time than any counter of milliseconds in 31 bits can hold: what runs for weeks must go on right.

@@ -30,6 +30,15 @@ pub(super) struct Entry<B> {
     pub(super) age: u64,
 }
 
+/// A state of the present stretch to go back to.
+pub(super) struct Mark<B> {
+    both: Both<B>,
+    from: usize,
+    tape: Tape,
+    standing: Vec<Standing>,
+    age: u64,
+}
+
 /// A timer that is timing and yet does not count, since nothing executes it: its accumulated value, and for how
 /// many microseconds.
 type Standing = (u16, u64);
@@ -451,6 +460,23 @@ impl<'c, B: Side> Campaign<'c, B> {
         self.tape.clear();
         self.pending.clear();
         true
+    }
+
+    /// The present state.
+    pub(super) fn mark(&self) -> Mark<B> {
+        let (both, tape, standing) = (self.both.fork(), self.tape.clone(), self.standing.clone());
+        Mark { both, from: self.from, tape, standing, age: self.age }
+    }
+
+    /// Goes back to a state.
+    pub(super) fn return_to(&mut self, mark: &Mark<B>) {
+        self.both.copy_from(&mark.both);
+        self.from = mark.from;
+        self.tape.clone_from(&mark.tape);
+        self.standing.clone_from(&mark.standing);
+        self.age = mark.age;
+        self.lapsed = false;
+        self.pending.clear();
     }
 
     /// All scans from power-up to now.
