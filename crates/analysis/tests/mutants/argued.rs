@@ -44,7 +44,7 @@ pub(crate) fn check(program: &str, mutants: &[Mutant], scope: &Scope) {
 }
 
 /// Arguments rest on the text of the converted program; read them beside it.
-const ARGUED: [Argued; 17] = [
+const ARGUED: [Argued; 21] = [
     Argued {
         program: "batch.SLC",
         what: "$Main rung 4: MATH D5 \"IF(T0.Acc < D6, 0, T0.Acc - D6)\" -> MATH D5 \"IF(T0.Acc < D6, 1, T0.Acc - D6)\"",
@@ -190,5 +190,37 @@ const ARGUED: [Argued; 17] = [
         why: "D3 is left at 1 where N107 has reached N106; the same execution then sets N105:13. D3 is read only with N105:15 on and N105:13 off. N105:13 goes off with N105:15 \
               on in no execution; where N105:15 goes off, D3 is made 0 before it is read: without power at once, at the first execution after entering run by the line for \
               N105:15 off.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "SLC3_FLASHER rung 1: OR ST1 -> ORN ST1",
+        instruction: 2,
+        steady: &["C515", "N117", "D2", "D8", "D9"],
+        why: "The time of T4:4 is taken (D2, D8) only when it has power. Without power N117:15 goes off, and D2 is read only with N117:15 on, that is, when the execution \
+              before had power and took the time as well. The next timer computes D2 anew.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "SLC3_FLASHER rung 1: MATH D9 \"IF(N119 < N118, D9 % 10, 0)\" -> MATH D9 \"IF(N120 < N118, D9 % 10, 0)\"",
+        instruction: 23,
+        steady: &["N117", "N118", "N119", "N120", "D9"],
+        why: "N120, the first word of T4:5, is 0 or has bit 15 on: it is below N118, which is 30, always. So D9 keeps its rest where N119 has reached N118; the same execution \
+              then sets N117:13, and D9 is read only with N117:15 on and N117:13 off. N117:13 goes off with N117:15 alone, and D9 is made 0 before it is read again.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "SLC3_FLASHER rung 1: MOVE 0 D9 -> MOVE 1 D9",
+        instruction: 48,
+        steady: &["N117", "D9"],
+        why: "D9 is left at 1 where the rung has no power, which also resets N117:15. The next execution with power finds N117:15 off and makes D9 0 before it is read; it is \
+              read nowhere else.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        what: "SLC3_FLASHER rung 1: OR ST1 -> OR ST2",
+        instruction: 50,
+        steady: &["C515", "N117", "D9", "N119"],
+        why: "C515 goes off at the first execution with power instead of the first one. With power it resets N117:15 and makes D2 0; if an execution without power came \
+              before, that one has reset N117:15, and D2 is read only with N117:15 on. Without power C515 does nothing that lasts: the next timer computes D2 anew.",
     },
 ];
