@@ -52,6 +52,9 @@ const LONG: u64 = 400_000;
 
 const HEADS: [&str; 7] = ["found", "unchanged", "helpers", "related", "argued", "refused", "unexplained"];
 
+/// The column of those that no controller would load.
+const REFUSED: usize = 5;
+
 /// Counts by [`HEADS`].
 type Row = [usize; 7];
 
@@ -70,8 +73,13 @@ fn mutants_are_reported_as_different() {
         assert!(all.len() >= 200, "{}: only {} mutants", program.name, all.len());
         argued::check(&program.name, &all, &base.scope);
         let wanted = |mutant: &&Mutant| only.is_empty() || only.lines().any(|text| mutant.what.contains(text));
+        let mut loaded = 0;
         for mutant in spread(&all, count).filter(wanted) {
+            if loaded == count {
+                break;
+            }
             let column = try_one(&program, mutant, scans, &mut judge);
+            loaded += usize::from(column != REFUSED);
             if column == HEADS.len() - 1 {
                 open.push(format!("{}: {:?} {}", program.name, mutant.kind, mutant.what));
             }
@@ -97,11 +105,22 @@ fn mutants_are_reported_as_different() {
     }
 }
 
-/// So many mutants from all over the program; those that no controller would load come besides.
+/// All mutants, in front so many from all over the program: those that no controller would load are made good for by
+/// later ones.
 fn spread(all: &[Mutant], count: usize) -> impl Iterator<Item = &Mutant> {
     let wanted = count.min(all.len());
-    let chosen = move |index: &usize| index * wanted / all.len() != (index + 1) * wanted / all.len();
-    (0..all.len()).filter(chosen).filter_map(|index| all.get(index))
+    let is_chosen = |index: &usize| index * wanted / all.len() != (index + 1) * wanted / all.len();
+    let (mut order, rest): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(is_chosen);
+    // From all over the program again: in steps that have no part in common with their number.
+    let common = |mut a: usize, mut b: usize| {
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let step = (rest.len() * 5 / 8..).find(|step| common(*step, rest.len()) <= 1).unwrap_or(1);
+    order.extend((0..rest.len()).map(|index| rest[index * step % rest.len()]));
+    order.into_iter().map(|index| &all[index])
 }
 
 /// The column of a mutant.
@@ -116,7 +135,7 @@ fn try_one(program: &Migrated, mutant: &Mutant, scans: u64, judge: &mut Judge<'_
                 return 0;
             }
             // Refused by the engine, or an address beyond its block: no controller would load it.
-            Verdict::NotComparable => return 5,
+            Verdict::NotComparable => return REFUSED,
             Verdict::NoDifference => answer = judge.ask(mutant, thorough),
         }
         match answer {
@@ -190,7 +209,7 @@ fn what_is_followed_is_what_the_engine_does() {
     for program in migrated::proven(thorough || !cfg!(debug_assertions)) {
         let scope = prove(&program, &program.project, 2).scope;
         let all = mutate::all(&program.project);
-        let mutants: Vec<&Mutant> = spread(&all, count).collect();
+        let mutants: Vec<&Mutant> = spread(&all, count).take(count).collect();
         let compared = agree::compare((&program.name, &program.project), &scope, &mutants, (scans, thorough));
         let (told, said) = compared.unwrap_or_else(|why| panic!("{}: {why}", program.name));
         println!("{}: {told} scans, {said} bits by formulas", program.name);

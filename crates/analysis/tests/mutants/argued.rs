@@ -44,7 +44,7 @@ pub(crate) fn check(program: &str, mutants: &[Mutant], scope: &Scope) {
 }
 
 /// Arguments rest on the text of the converted program; read them beside it.
-const ARGUED: [Argued; 21] = [
+const ARGUED: [Argued; 22] = [
     Argued {
         program: "batch.SLC",
         what: "$Main rung 4: MATH D5 \"IF(T0.Acc < D6, 0, T0.Acc - D6)\" -> MATH D5 \"IF(T0.Acc < D6, 1, T0.Acc - D6)\"",
@@ -129,6 +129,14 @@ const ARGUED: [Argued; 21] = [
         steady: &["D4", "N108"],
         why: "D4 is left at 1 where the rung has no power, which also resets N108:15. The next execution with power finds N108:15 off and makes D4 0 before it \
               is read; it is read nowhere else.",
+    },
+    Argued {
+        program: "TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS",
+        what: "$Main rung 7: OR ST1 -> OR ST2",
+        instruction: 50,
+        steady: &["C512", "N108", "D3"],
+        why: "C512 goes off at the first execution with power instead of the first one. With power it resets N108:15 and makes D3 0; if an execution without \
+              power came before, that one has reset N108:15, and D3 is read only with N108:15 on. Without power C512 does nothing else.",
     },
     Argued {
         program: "TRAFFIC_LIGHT.RSS",
