@@ -26,6 +26,24 @@ fn migrated(image: &Image) -> (domore::Project, Vec<Mapping>) {
     (migration.project, map.collect())
 }
 
+/// A conversion that does not set S:5/0.
+fn without_traps(project: &domore::Project) -> domore::Project {
+    let mut silent = project.clone();
+    let sets =
+        |it: &domore::Instruction| it.is("SET") && it.operand(0).starts_with('N') && it.operand(0).ends_with(":0");
+    let mut traps = 0;
+    for part in &mut silent.parts {
+        let domore::Part::Code(code) = part else { continue };
+        for rung in &mut code.rungs {
+            let before = rung.instructions.len();
+            rung.instructions.retain(|it| !sets(it));
+            traps += before - rung.instructions.len();
+        }
+    }
+    assert!(traps > 0, "no trap in {project:?}");
+    silent
+}
+
 const BASE: [&str; 3] = [
     "XIC I:0.0/0 TON T4:0 0.01 300 0",
     "XIC T4:0/DN XIO I:0.0/1 OTE O:0.0/0",
@@ -181,18 +199,43 @@ fn a_stated_condition_excuses_only_the_stops_of_its_rung() {
     assert!(report.outside > 0, "no float overflowed: {report}");
 
     // The sum overflows and nothing is done about it.
-    let mut silent = project.clone();
-    let code = silent.parts.iter_mut().find_map(|part| match part {
-        domore::Part::Code(code) if code.name == "$Main" => Some(code),
-        _ => None,
-    });
-    let rungs = &mut code.expect("a main program").rungs;
-    let sets =
-        |it: &domore::Instruction| it.is("SET") && it.operand(0).ends_with(":0") && it.operand(0).starts_with('N');
-    let rung = rungs.iter_mut().find(|rung| rung.instructions.iter().any(sets)).expect("a trap");
-    rung.instructions.retain(|it| !sets(it));
-    let report = prove_domore(&image, &silent, &map, Some(&marks), &options(20_000));
+    let report = prove_domore(&image, &without_traps(&project), &map, Some(&marks), &options(20_000));
     assert!(matches!(report.found, Some((Difference::OriginalStopped(_, Some(0x20)), _))), "{report}");
+}
+
+#[test]
+fn an_index_that_must_stay_inside_excuses_no_overflow() {
+    let image = program(&["XIC I:0.0/1 ADD N7:[N7:1] 32000 N7:0"]);
+    let (project, map) = migrated(&image);
+    let marks = fates(&project).expect("marks");
+    assert!(marks[0].conditions[0].starts_with("INDIRECT"), "{marks:?}");
+    let report = prove_domore(&image, &project, &map, Some(&marks), &options(20_000));
+    assert_eq!(report.verdict(), Verdict::NoDifference, "{report}");
+    let report = prove_domore(&image, &without_traps(&project), &map, Some(&marks), &options(20_000));
+    assert!(matches!(report.found, Some((Difference::OriginalStopped(_, Some(0x20)), _))), "{report}");
+}
+
+#[test]
+fn timed_interrupts_come_once_between_two_scans() {
+    let corpus = migrated::corpus().map(|corpus| corpus.join("PLC_2s_lamp_flash/sti_1000ms_live.RSS"));
+    let Some(path) = corpus.filter(|path| path.exists()) else {
+        println!("skipped: corpus not present");
+        return;
+    };
+    let live = migrated::Migrated::of(&path).image;
+    let parse = |text: &str| convert::slc::rung::parse_rung(text, Some(live.processor.family)).expect("a rung");
+    // Shorter than most times before a scan.
+    for main in ["XIC S:1/15 STS 1", "XIC S:1/15 STS 5", "XIC S:1/15 STS 1000"] {
+        let mut image = live.clone();
+        for file in image.program_files.iter_mut().filter(|file| matches!(file.number, 2 | 3)) {
+            let end = file.rungs.pop().expect("an END rung");
+            let rung = if file.number == 2 { main } else { "XIO O:0.0/0 OTE O:0.0/0" };
+            file.rungs = vec![parse(rung), end];
+        }
+        let (project, map) = migrated(&image);
+        let report = prove_domore(&image, &project, &map, fates(&project).as_deref(), &options(20_000));
+        assert_eq!(report.verdict(), Verdict::NoDifference, "{main}: {report}");
+    }
 }
 
 #[test]

@@ -153,6 +153,7 @@ fn a_minor_error_names_the_rung_that_set_it() {
     assert_eq!(fault("ADD N7:0 1 N7:1\nOTU S:5/0\nADD N7:0 2 N7:2"), Some((0x20, (2, 2), true)));
     // The program set it, or the fault is another one: the end of the program, and the rung that failed.
     assert_eq!(fault("OTE B3:0/1\nOTL S:5/0"), Some((0x20, (2, 1), false)));
+    assert_eq!(fault("ADD N7:0 1 N7:1\nOTU S:5/0\nOTL S:5/0"), Some((0x20, (2, 2), false)));
     assert_eq!(fault("OTE B3:0/1\nADD N7:0 1 N7:1\nRET"), Some((0x38, (2, 2), false)));
 
     let mut bench = Bench::new(Slc503, "ADD N7:0 1 N7:1\nOTE B3:0/1", &overflow);

@@ -24,6 +24,8 @@ const MARK_EVERY: u64 = 1000;
 const DRIFT_PACES: [u32; 4] = [3276, 3277, 32_767, 32_768];
 /// After so many microseconds the clock that converted timers count by starts anew.
 const CLOCK_TURN: u64 = 1_000_000_000_000;
+/// Scans that are spent on the way there beside a timed interrupt.
+const MOST_TO_TURN: u64 = 2_000_000;
 /// Scans between two changes of mode on the way there.
 const STAYS: [u64; 4] = [u64::MAX, 2, 3, 5];
 /// Ways past it that are tried.
@@ -35,7 +37,7 @@ impl<B: Side> Campaign<'_, B> {
     /// So many scans of one length that what grows or falls with each of them comes to an end of 31 bits: mostly
     /// the time of a scan itself, as far as a word holds it.
     pub(super) fn drift(&mut self) {
-        if u64::from(self.drifts + 1) * DRIFT > self.budget / 4 {
+        if u64::from(self.drifts + 1) * DRIFT > self.scans / 4 {
             return self.wander();
         }
         self.drifts += 1;
@@ -43,6 +45,8 @@ impl<B: Side> Campaign<'_, B> {
         for _ in 0..1 + self.random.below(3) {
             self.change();
         }
+        // With the changes made: a mark is a state between two scans.
+        self.scan(false, pace);
         let mut marks: Vec<Mark<B>> = Vec::new();
         for scan in 0..DRIFT {
             if scan % MARK_EVERY == 0 {
@@ -72,15 +76,23 @@ impl<B: Side> Campaign<'_, B> {
         }
         self.return_to(mark);
         for _ in 0..scans.saturating_sub(6) {
+            if !self.goes_on() {
+                return;
+            }
             self.scan(false, pace);
         }
         let near = self.mark();
         let (pace, longest) = (pace / 1000, 2 * pace / 1000);
         for _ in 0..WAYS_TO_END {
+            if !self.open() {
+                return;
+            }
             self.return_to(&near);
             for _ in 0..self.random.below(12) {
                 let dt = 1 + self.random.below(longest as usize) as u32;
-                self.scan(false, dt * 1000);
+                if self.goes_on() {
+                    self.scan(false, dt * 1000);
+                }
             }
             for _ in 0..12 {
                 if self.goes_on() && !self.would_stop(pace) {
@@ -114,7 +126,8 @@ impl<B: Side> Campaign<'_, B> {
     /// Whether the original would stop in a scan behind so many milliseconds.
     fn would_stop(&mut self, dt: u32) -> bool {
         self.probe.copy_from(&self.both.a);
-        self.probe.scan(Duration::from_millis(dt.into()));
+        let dt = (dt * 1000).min(self.longest());
+        self.probe.scan(Duration::from_micros(dt.into()));
         self.probe.stopped().is_some()
     }
 
@@ -141,10 +154,11 @@ impl<B: Side> Campaign<'_, B> {
     pub(super) fn reach_age(&mut self) {
         let mut most = LONGEST_WAIT.max(self.budget / PART_OF_ALL);
         if self.short {
-            // Scans are short beside a timed interrupt: it takes most of them, or cannot be.
-            most = self.budget - self.budget / 4;
-            let period = self.both.a.machine.timed_interrupt().map_or(1, |(_, period)| period.as_micros().max(1));
-            if self.aged || u128::from(most) < u128::from(CLOCK_TURN) / period || !self.begin_at(0) {
+            // Scans are short beside a timed interrupt: it takes three times as many as were made, or cannot be.
+            most = (self.budget - self.budget / 4).min(3 * self.scans).min(MOST_TO_TURN);
+            let period = self.both.a.machine.timed_interrupt().map_or(0, |(_, period)| period.as_micros());
+            let needed = u128::from(CLOCK_TURN).checked_div(period).unwrap_or(u128::MAX);
+            if self.aged || u128::from(most) < needed || !self.begin_at(0) {
                 return self.wander();
             }
             self.aged = true;
@@ -207,8 +221,9 @@ impl<B: Side> Campaign<'_, B> {
             self.probe.leave_run();
             self.probe.enter_run();
             self.probe.scan(Duration::ZERO);
-            for _ in 0..24 {
-                self.probe.scan(Duration::from_millis(left / 24));
+            for part in 0..24 {
+                let rest = if part == 23 { left % 24 } else { 0 };
+                self.probe.scan(Duration::from_millis(left / 24 + rest));
             }
             if self.probe.word(preset - 16) & TIMING != 0 {
                 return Some(left);
@@ -242,7 +257,7 @@ impl<B: Side> Campaign<'_, B> {
         let most = LONGEST_WAIT.max(self.budget / PART_OF_ALL);
         let mut scans = 0;
         while left > 0 && scans < most && self.goes_on() {
-            let dt = left.min(DAY_PACE / 1000);
+            let dt = left.min(self.longest().min(DAY_PACE) / 1000);
             self.scan(false, dt * 1000);
             left -= dt;
             scans += 1;

@@ -90,6 +90,8 @@ pub(crate) struct Campaign<'c, B: Side> {
     /// A timed interrupt runs in the original: times between scans stay so short that it comes no more
     /// than once between two of them.
     pub(super) short: bool,
+    /// Its period does not change between two scans.
+    steady: bool,
     /// Drifts made.
     pub(super) drifts: u32,
     /// A program with a timed interrupt was brought to where clocks start anew.
@@ -142,8 +144,8 @@ const LONGEST_RECIPE: usize = 2500;
 const MOST_MET: usize = 800;
 /// TT of the flags of a timer.
 pub(super) const TIMING: u16 = 0x4000;
-/// Longest time before a scan where a timed interrupt could be started in it, in microseconds: the shortest period
-/// there is.
+/// Longest time before a scan beside a timed interrupt that does not run yet or whose period can change, in
+/// microseconds.
 const SHORT_PACE: u32 = 10_000;
 
 impl<'c, B: Side> Campaign<'c, B> {
@@ -155,7 +157,8 @@ impl<'c, B: Side> Campaign<'c, B> {
         goals: Goals,
         (solver, surroundings): (&'c Solver<'c>, &'c Surroundings<'c>),
         presets: Vec<(u32, u32)>,
-        (seed, budget, short): (u64, u64, bool),
+        (seed, budget): (u64, u64),
+        (short, steady): (bool, bool),
         progress: Option<&'c Progress>,
     ) -> Campaign<'c, B> {
         let seen = Seen::new(both.b.operations());
@@ -189,6 +192,7 @@ impl<'c, B: Side> Campaign<'c, B> {
             time: Duration::ZERO,
             budget,
             short,
+            steady,
             drifts: 0,
             aged: false,
             eves: Vec::new(),
@@ -405,13 +409,14 @@ impl<'c, B: Side> Campaign<'c, B> {
     }
 
     /// The longest time before the next scan, in microseconds: a timed interrupt comes no more than once in it.
-    fn longest(&self) -> u32 {
+    pub(super) fn longest(&self) -> u32 {
         if !self.short {
             return u32::MAX;
         }
         let Some((left, period)) = self.both.a.machine.timed_interrupt() else { return SHORT_PACE };
         let below_two = (left + period).saturating_sub(Duration::from_millis(1));
-        u32::try_from(below_two.as_millis() * 1000).unwrap_or(u32::MAX).max(SHORT_PACE)
+        let below_two = u32::try_from(below_two.as_millis() * 1000).unwrap_or(u32::MAX).max(1000);
+        if self.steady { below_two } else { below_two.min(SHORT_PACE) }
     }
 
     /// Adds a long scan to the time of timers that are timing but not executed.

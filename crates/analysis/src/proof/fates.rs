@@ -8,7 +8,7 @@ use ladder::{Image, Instruction, Rung};
 use super::RungFate;
 
 /// Reads the comments a migration leaves above each rung (`SLC 2:14  XIC ...`, `condition: ...`,
-/// `person: ...`, the last two on as many lines as they take). `None`: no rung says where it comes from.
+/// `person: ...`; what stands below one of the last two belongs to it, up to the next of these lines). `None`: no rung says where it comes from.
 pub fn fates(project: &domore::Project) -> Option<Vec<RungFate>> {
     let rungs = project.code_blocks().flat_map(|block| &block.rungs);
     let fates: Vec<RungFate> = rungs.filter_map(fate).collect();

@@ -227,7 +227,8 @@ fn prove<B: Side>(
         let why = "a timed interrupt runs in the original: it came at most once between two scans";
         report.notes.push(why.to_owned());
     }
-    let limits = (options.seed, options.scans, short);
+    let steady = has_steady_period(image, &xref, &both.a, &inputs);
+    let limits = (options.seed, options.scans);
     let outline = base.a.machine.outline();
     let places: Vec<_> = inputs.all.iter().map(|input| (input.at, input.kind)).collect();
     let names = terminals(&xref, &base.a);
@@ -241,7 +242,17 @@ fn prove<B: Side>(
     };
     let timers = timers(image, &base.a);
     let progress = options.progress.as_deref();
-    let mut campaign = Campaign::new(both, &pairs, &inputs, goals, (&solver, &surroundings), timers, limits, progress);
+    let mut campaign = Campaign::new(
+        both,
+        &pairs,
+        &inputs,
+        goals,
+        (&solver, &surroundings),
+        timers,
+        limits,
+        (short, steady),
+        progress,
+    );
     campaign.run();
     report.take_run(&campaign, inputs.all.len());
     if campaign.is_stopped() && campaign.found.is_none() {
@@ -357,14 +368,30 @@ fn date<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, pairs: &Pairs) 
     presets
 }
 
+/// Where the period of a timed interrupt stands.
+const SET_POINTS: [&str; 2] = ["S:30", "STI:0.SPM"];
+
 /// A timed interrupt can come: a file is set up for one, and a period stands in the data or is written.
 fn has_timed_interrupt(image: &Image) -> bool {
     let calls = CallGraph::build(image, &image.documentation);
     let named = |kind| calls.files.iter().flat_map(|file| &file.entries).any(|entry| entry.kind == kind);
     let value = |text: &str| Address::parse(text).ok().and_then(|address| image.value_at(&address));
-    let period = ["S:30", "STI:0.SPM"].into_iter().filter_map(value).any(|value| value != ladder::Value::Word(0));
+    let period = SET_POINTS.into_iter().filter_map(value).any(|value| value != ladder::Value::Word(0));
     let started = crate::instructions(image).any(|(_, it)| matches!(it.mnemonic.name(), Some("STS" | "STE")));
     named(EntryKind::TimedInterrupt) && (period || started)
+}
+
+/// Whether the period of a timed interrupt changes in the main program at most, which no interrupt routine can call.
+fn has_steady_period<T>(image: &Image, xref: &CrossReference<'_>, a: &Slc, inputs: &Inputs<T>) -> bool {
+    const MAIN: u16 = 2;
+    let started = crate::instructions(image).filter(|(_, it)| it.mnemonic.name() == Some("STS"));
+    let words = SET_POINTS.iter().filter_map(|text| Address::parse(text).ok());
+    let mut words = words.filter_map(|word| Some((a.place(&word.to_string()).ok()?.0, word)));
+    let stays = words.all(|(at, word)| {
+        let written = xref.of(&word).iter().any(|it| it.role.writes() && it.location.file != MAIN);
+        !written && inputs.all.iter().all(|input| input.at >> 4 != at >> 4)
+    });
+    stays && started.map(|(location, _)| location.file).all(|file| file == MAIN)
 }
 
 /// Addresses of terminals by place: which slot a word belongs to does not show in its place.

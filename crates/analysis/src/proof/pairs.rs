@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ladder::{Address, FileType, Image};
 
+use super::play::MINOR_ERROR;
 use super::side::{Kind, Side, Slc};
 use crate::CrossReference;
 
@@ -303,7 +304,10 @@ impl Pairs {
         let here = |row: &&(u16, u32, Vec<String>)| (row.0, row.1) == (file, u32::from(rung));
         let mut conditions = self.conditions.iter().filter(here).flat_map(|row| &row.2);
         self.persons.contains(&(file, u32::from(rung)))
-            || conditions.any(|condition| condition.contains(&code) || condition.starts_with("INDIRECT"))
+            || conditions.any(|condition| {
+                // An index that leads nowhere stops the rung at once.
+                condition.contains(&code) || condition.starts_with("INDIRECT") && fault.code != MINOR_ERROR
+            })
     }
 
     /// How the other side spells a place of the original.

@@ -62,7 +62,7 @@ fn write<B: Side>(both: &mut Both<B>, inputs: &Inputs<B::Target>, sets: &[Set]) 
 }
 
 /// Major fault of a minor error at the end of a scan.
-const MINOR_ERROR: u16 = 0x0020;
+pub(super) const MINOR_ERROR: u16 = 0x0020;
 
 /// Compares both sides after a scan.
 pub(crate) fn compare<B: Side>(a: &Slc, b: &B, pairs: &Pairs, buffers: &mut [Vec<u8>; 2]) -> Option<Difference> {

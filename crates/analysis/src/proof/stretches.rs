@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::campaign::{Campaign, PACES, TIMING};
 use super::goals::Goal;
+use super::inputs::Input;
 use super::play::Both;
 use super::side::{Kind, Side, Slc};
 use super::solve::Plan;
@@ -86,10 +87,12 @@ impl<B: Side> Campaign<'_, B> {
         }
     }
 
-    /// Edges of every bit from outside before any time has passed: what was loaded still stands then.
+    /// First scans with every bit from outside on and off in turn before any time has passed: what was loaded still
+    /// stands then.
     pub(super) fn each_at_once(&mut self) {
-        let bits: Vec<usize> =
-            (0..).zip(&self.inputs.all).filter(|row| row.1.kind == Kind::Bit).map(|row| row.0).collect();
+        // Nobody writes on the way to run what going there resets.
+        let bit = |row: &(usize, &Input<B::Target>)| row.1.kind == Kind::Bit && !row.1.written;
+        let bits: Vec<usize> = (0..).zip(&self.inputs.all).filter(bit).map(|row| row.0).collect();
         if (bits.len() * EDGES) as u64 > self.budget / PART_OF_ALL {
             return;
         }

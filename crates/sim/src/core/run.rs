@@ -374,14 +374,27 @@ impl Core<'_> {
         true
     }
 
+    /// Program file and rung of the box that set a minor error; `None` where a coil can have set it as well.
+    fn minor_cause(&mut self) -> Option<(u16, u16)> {
+        let by = self.s.minor_by.take()?;
+        let minor = self.p.layout.status + status::MINOR;
+        let sets = |op: &Op| match op {
+            Op::Ote { word, mask } | Op::Otl { word, mask } => {
+                *word as usize == minor && *mask & status::MINOR_FATAL != 0
+            }
+            _ => false,
+        };
+        let site = self.p.sites.get(by as usize).filter(|_| !self.p.ops.iter().any(sets))?;
+        Some((site.file, site.rung))
+    }
+
     /// A major fault: the user fault routine may clear it. `true`: the program goes on.
     pub(crate) fn raise<W: Watch>(&mut self, code: u16, at: usize, context: Context, watch: &mut W) -> bool {
         let site = self.p.sites.get(at).copied();
         let (file, rung) = site.map_or((0, 0), |site| (site.file, site.rung));
         self.set_status(status::FAULT_CODE, code);
         self.set_status_bit(status::MAJOR_ERROR, true);
-        let cause = self.s.minor_by.take().filter(|_| code == code::MINOR_ERROR);
-        let cause = cause.and_then(|by| self.p.sites.get(by as usize)).map(|site| (site.file, site.rung));
+        let cause = if code == code::MINOR_ERROR { self.minor_cause() } else { None };
         self.s.fault = Some(MajorFault { code, file, rung, cause });
         if context == Context::FaultRoutine {
             let minor = self.status(status::MINOR);
