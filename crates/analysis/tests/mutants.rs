@@ -70,7 +70,6 @@ fn mutants_are_reported_as_different() {
         assert_ne!(base.verdict(), Verdict::Different, "{}: {base}", program.name);
         let mut judge = Judge::new(&program.project, &base.scope);
         let all = mutate::all(&program.project);
-        assert!(all.len() >= 200, "{}: only {} mutants", program.name, all.len());
         argued::check(&program.name, &all, &base.scope);
         let wanted = |mutant: &&Mutant| only.is_empty() || only.lines().any(|text| mutant.what.contains(text));
         let mut loaded = 0;
@@ -86,6 +85,7 @@ fn mutants_are_reported_as_different() {
             kinds.entry(format!("{:?}", mutant.kind)).or_default()[column] += 1;
             programs.entry(program.name.clone()).or_default()[column] += 1;
         }
+        assert!(loaded == count || !only.is_empty(), "{}: only {loaded} mutants load", program.name);
         println!("{}: {:?}", program.name, programs.get(&program.name));
     }
     let mut sum = Row::default();
@@ -97,7 +97,7 @@ fn mutants_are_reported_as_different() {
     for (name, row) in &programs {
         let (found, unexplained) = (row[0], row[6]);
         // Of few mutants one may be left that only a long run finds.
-        let most = if count == FEW { 1 } else { (found + unexplained) / 100 };
+        let most = usize::from(count == FEW);
         assert!(
             unexplained <= most,
             "{name}: {unexplained} mutants are neither found, {found} are, nor shown equivalent: {open:#?}"

@@ -25,7 +25,7 @@ const DRIFT_PACES: [u32; 4] = [3276, 3277, 32_767, 32_768];
 /// After so many microseconds the clock that converted timers count by starts anew.
 const CLOCK_TURN: u64 = 1_000_000_000_000;
 /// Scans that are spent on the way there beside a timed interrupt.
-const MOST_TO_TURN: u64 = 2_000_000;
+const MOST_TO_TURN: u64 = 1_000_000;
 /// Scans between two changes of mode on the way there.
 const STAYS: [u64; 4] = [u64::MAX, 2, 3, 5];
 /// Ways past it that are tried.
@@ -154,8 +154,8 @@ impl<B: Side> Campaign<'_, B> {
     pub(super) fn reach_age(&mut self) {
         let mut most = LONGEST_WAIT.max(self.budget / PART_OF_ALL);
         if self.short {
-            // Scans are short beside a timed interrupt: it takes three times as many as were made, or cannot be.
-            most = (self.budget - self.budget / 4).min(3 * self.scans).min(MOST_TO_TURN);
+            // Scans are short beside a timed interrupt: it takes most of them, or cannot be.
+            most = (self.budget - self.budget / 4).min(MOST_TO_TURN);
             let period = self.both.a.machine.timed_interrupt().map_or(0, |(_, period)| period.as_micros());
             let needed = u128::from(CLOCK_TURN).checked_div(period).unwrap_or(u128::MAX);
             if self.aged || u128::from(most) < needed || !self.begin_at(0) {
