@@ -16,6 +16,8 @@ const MOST_EVES: usize = 64;
 const DAY_PACE: u32 = 3_599_987_000;
 /// Scans of a drift: half the numbers of 32 bits in steps of half those of 16, and some.
 const DRIFT: u64 = 66_000;
+/// Drifts of a run.
+const MOST_DRIFTS: u32 = 6;
 /// Ways to its end that are tried.
 const WAYS_TO_END: usize = 100;
 /// Scans between two states of a drift that are gone back to.
@@ -37,7 +39,7 @@ impl<B: Side> Campaign<'_, B> {
     /// So many scans of one length that what grows or falls with each of them comes to an end of 31 bits: mostly
     /// the time of a scan itself, as far as a word holds it.
     pub(super) fn drift(&mut self) {
-        if u64::from(self.drifts + 1) * DRIFT > self.scans / 4 {
+        if self.drifts == MOST_DRIFTS || u64::from(self.drifts + 1) * DRIFT > self.budget / 4 {
             return self.wander();
         }
         self.drifts += 1;
