@@ -7,7 +7,8 @@ use super::mutate::Mutant;
 /// A mutant that does the same, and why.
 #[derive(Debug)]
 pub(crate) struct Argued {
-    program: &'static str,
+    /// The programs that are alike in what it speaks of.
+    programs: &'static [&'static str],
     /// The mutant as it is named, and which instruction of its rung is meant.
     what: &'static str,
     instruction: usize,
@@ -19,7 +20,7 @@ pub(crate) struct Argued {
 impl Argued {
     /// Whether it is this one.
     pub(crate) fn is(&self, program: &str, mutant: &Mutant) -> bool {
-        self.program == program && self.what == mutant.what && mutant.place.2 == Some(self.instruction)
+        self.programs.contains(&program) && self.what == mutant.what && mutant.place.2 == Some(self.instruction)
     }
 }
 
@@ -30,7 +31,7 @@ pub(crate) fn argument(program: &str, mutant: &Mutant) -> Option<&'static Argued
 
 /// Every argument must be about a mutant there is, and no input of the run may change what it takes as steady.
 pub(crate) fn check(program: &str, mutants: &[Mutant], scope: &Scope) {
-    for row in ARGUED.iter().filter(|row| row.program == program) {
+    for row in ARGUED.iter().filter(|row| row.programs.contains(&program)) {
         assert!(mutants.iter().any(|mutant| row.is(program, mutant)), "there is no such mutant: {row:?}");
         assert!(!row.why.is_empty(), "{row:?}");
         // The word itself or one of its bits.
@@ -44,9 +45,9 @@ pub(crate) fn check(program: &str, mutants: &[Mutant], scope: &Scope) {
 }
 
 /// Arguments rest on the text of the converted program; read them beside it.
-const ARGUED: [Argued; 22] = [
+const ARGUED: [Argued; 19] = [
     Argued {
-        program: "batch.SLC",
+        programs: &["batch.SLC"],
         what: "$Main rung 4: MATH D5 \"IF(T0.Acc < D6, 0, T0.Acc - D6)\" -> MATH D5 \"IF(T0.Acc < D6, 1, T0.Acc - D6)\"",
         instruction: 1,
         steady: &["T0", "D1", "D2", "D5", "D6"],
@@ -55,7 +56,7 @@ const ARGUED: [Argued; 22] = [
               there on: no difference changes.",
     },
     Argued {
-        program: "batch.SLC",
+        programs: &["batch.SLC"],
         what: "$Main rung 5: STRGE T0.Acc 1000000000 -> STRGE T0.Acc 999999999",
         instruction: 0,
         steady: &["T0", "D1", "D2", "D5", "D6"],
@@ -64,7 +65,7 @@ const ARGUED: [Argued; 22] = [
               which nothing shows, as for rung 4.",
     },
     Argued {
-        program: "batch.SLC",
+        programs: &["batch.SLC"],
         what: "SLC3_FILL rung 2: AND C16 -> AND C17",
         instruction: 6,
         steady: &["C16", "C17", "N2", "D3", "N16"],
@@ -73,7 +74,7 @@ const ARGUED: [Argued; 22] = [
               the one execution of the timer.",
     },
     Argued {
-        program: "lecky_demo_tof.RSS",
+        programs: &["lecky_demo_tof.RSS"],
         what: "SLC253_2FAILS512 rung 1: AND C114 -> AND C115",
         instruction: 7,
         steady: &["C114", "C115", "N7", "D9", "N378"],
@@ -82,7 +83,7 @@ const ARGUED: [Argued; 22] = [
               its end, where C114 is on as well at the one execution of the timer.",
     },
     Argued {
-        program: "lecky_demo_tof.RSS",
+        programs: &["lecky_demo_tof.RSS"],
         what: "$Main rung 8: ANDN N34:13 -> ANDN N34:14",
         instruction: 2,
         steady: &["N34", "N16:0", "N16:5"],
@@ -90,7 +91,7 @@ const ARGUED: [Argued; 22] = [
               and rung 7 had set N16:5. Now rung 7 either finds C99 on, and N16:5 keeps N16:0 off, or finds it off: N16:0 is off either way.",
     },
     Argued {
-        program: "lecky_demo_tof.RSS",
+        programs: &["lecky_demo_tof.RSS"],
         what: "$Main rung 9: ANDN N37:13 -> ANDN N37:14",
         instruction: 2,
         steady: &["N37", "N16:0", "N16:5"],
@@ -98,7 +99,7 @@ const ARGUED: [Argued; 22] = [
               row, because N16:5 has to be reset by a scan with C99 off.",
     },
     Argued {
-        program: "3_pump_sequencing.RSS",
+        programs: &["3_pump_sequencing.RSS"],
         what: "SLC225_ONOFFSQTY rung 2: OR ST1 -> ORN ST1",
         instruction: 50,
         steady: &["N24", "N25", "N26", "C32"],
@@ -107,7 +108,7 @@ const ARGUED: [Argued; 22] = [
               timer computes it anew. The first execution with power resets C32 in both.",
     },
     Argued {
-        program: "3_pump_sequencing.RSS",
+        programs: &["3_pump_sequencing.RSS"],
         what: "SLC225_ONOFFSQTY rung 3: OR ST1 -> OR ST2",
         instruction: 4,
         steady: &["N27", "D14", "D16"],
@@ -115,7 +116,7 @@ const ARGUED: [Argued; 22] = [
               that is, when the execution before had power and took the time as well. The next timer computes D14 anew.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_SEQUENCER.RSS",
+        programs: &["TRAFFIC_LIGHT_SEQUENCER.RSS", "TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS"],
         what: "$Main rung 7: OR ST1 -> OR ST2",
         instruction: 50,
         steady: &["C512", "N108", "D3"],
@@ -123,7 +124,7 @@ const ARGUED: [Argued; 22] = [
               power came before, that one has reset N108:15, and D3 is read only with N108:15 on. Without power C512 does nothing else.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS"],
         what: "$Main rung 7: MOVE 0 D4 -> MOVE 1 D4",
         instruction: 48,
         steady: &["D4", "N108"],
@@ -131,15 +132,7 @@ const ARGUED: [Argued; 22] = [
               is read; it is read nowhere else.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_SEQUENCER_BAK017.RSS",
-        what: "$Main rung 7: OR ST1 -> OR ST2",
-        instruction: 50,
-        steady: &["C512", "N108", "D3"],
-        why: "C512 goes off at the first execution with power instead of the first one. With power it resets N108:15 and makes D3 0; if an execution without \
-              power came before, that one has reset N108:15, and D3 is read only with N108:15 on. Without power C512 does nothing else.",
-    },
-    Argued {
-        program: "TRAFFIC_LIGHT.RSS",
+        programs: &["TRAFFIC_LIGHT.RSS", "TRAFFIC_LIGHT_BAK017.RSS"],
         what: "$Main rung 4: MATH D12 \"IF(T0.Acc < D13, 0, T0.Acc - D13)\" -> MATH D12 \"IF(T0.Acc < D14, 0, T0.Acc - D13)\"",
         instruction: 1,
         steady: &["T0", "D0", "D12", "D13", "D14"],
@@ -148,7 +141,7 @@ const ARGUED: [Argued; 22] = [
               of them takes D0 anew at its next execution and counts no time there. From there on both are shifted alike: no difference changes.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT.RSS",
+        programs: &["TRAFFIC_LIGHT.RSS", "TRAFFIC_LIGHT_BAK017.RSS"],
         what: "$Main rung 5: STRGE T0.Acc 1000000000 -> STRGE T0.Acc 999999999",
         instruction: 0,
         steady: &["T0", "D0", "D12", "D13"],
@@ -157,25 +150,7 @@ const ARGUED: [Argued; 22] = [
               rung 4.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
-        what: "$Main rung 4: MATH D12 \"IF(T0.Acc < D13, 0, T0.Acc - D13)\" -> MATH D12 \"IF(T0.Acc < D14, 0, T0.Acc - D13)\"",
-        instruction: 1,
-        steady: &["T0", "D0", "D12", "D13", "D14"],
-        why: "Nothing writes D14: it is 0, and T0.Acc is never below. T0.Acc is below D13 only in a scan that enters run; there the clock D0 falls by D13 instead of standing still. \
-              D0 is read by the timers alone, as D0 less what it was at their execution before, modulo 1,000,000,000; entering run sets C512 to C516, so that each \
-              of them takes D0 anew at its next execution and counts no time there. From there on both are shifted alike: no difference changes.",
-    },
-    Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
-        what: "$Main rung 5: STRGE T0.Acc 1000000000 -> STRGE T0.Acc 999999999",
-        instruction: 0,
-        steady: &["T0", "D0", "D12", "D13"],
-        why: "Only where T0.Acc is 999,999,999 exactly: T0.Acc and D13 go on from -1, the difference of which is the same, and both programs hold the same again as soon as \
-              time passes. With run left and entered in between, T0.Acc is 0 and D12 1 instead of 0: the clock D0 gains a millisecond, which nothing shows, as for \
-              rung 4.",
-    },
-    Argued {
-        program: "TRAFFIC_LIGHT.RSS",
+        programs: &["TRAFFIC_LIGHT.RSS"],
         what: "SLC3_FLASHER rung 1: MOVE 0 D2 -> MOVE 0 D3",
         instruction: 6,
         steady: &["C515", "N117", "D2", "D3", "C512", "N105"],
@@ -183,7 +158,7 @@ const ARGUED: [Argued; 22] = [
               same scan, or not at all: C512 was set with C515, so that T4:0 begins with D3 at 0 at its next execution in either case, and without power D3 is 0 too.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT.RSS",
+        programs: &["TRAFFIC_LIGHT.RSS"],
         what: "SLC3_FLASHER rung 1: OR ST1 -> ORN ST1",
         instruction: 50,
         steady: &["C515", "N117", "D9", "N119"],
@@ -191,7 +166,7 @@ const ARGUED: [Argued; 22] = [
               the first execution with power makes D2 0, which is not read with N117:15 off, resets N117:15, which is off, and resets C515.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_BAK017.RSS"],
         what: "SLC4_TIMER rung 1: MATH D3 \"IF(N107 < N106, D3 % 1000, 0)\" -> MATH D3 \"IF(N107 < N106, D3 % 1000, 1)\"",
         instruction: 23,
         steady: &["N105", "N106", "N107", "D3", "C512"],
@@ -200,7 +175,7 @@ const ARGUED: [Argued; 22] = [
               N105:15 off.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_BAK017.RSS"],
         what: "SLC3_FLASHER rung 1: OR ST1 -> ORN ST1",
         instruction: 2,
         steady: &["C515", "N117", "D2", "D8", "D9"],
@@ -208,7 +183,7 @@ const ARGUED: [Argued; 22] = [
               before had power and took the time as well. The next timer computes D2 anew.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_BAK017.RSS"],
         what: "SLC3_FLASHER rung 1: MATH D9 \"IF(N119 < N118, D9 % 10, 0)\" -> MATH D9 \"IF(N120 < N118, D9 % 10, 0)\"",
         instruction: 23,
         steady: &["N117", "N118", "N119", "N120", "D9"],
@@ -216,7 +191,7 @@ const ARGUED: [Argued; 22] = [
               then sets N117:13, and D9 is read only with N117:15 on and N117:13 off. N117:13 goes off with N117:15 alone, and D9 is made 0 before it is read again.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_BAK017.RSS"],
         what: "SLC3_FLASHER rung 1: MOVE 0 D9 -> MOVE 1 D9",
         instruction: 48,
         steady: &["N117", "D9"],
@@ -224,7 +199,7 @@ const ARGUED: [Argued; 22] = [
               read nowhere else.",
     },
     Argued {
-        program: "TRAFFIC_LIGHT_BAK017.RSS",
+        programs: &["TRAFFIC_LIGHT_BAK017.RSS"],
         what: "SLC3_FLASHER rung 1: OR ST1 -> OR ST2",
         instruction: 50,
         steady: &["C515", "N117", "D9", "N119"],
